@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Counter-based random numbers: number i of stream k is a pure function of (seed, k, i), so order,
+// threads and block size do not matter. Philox4x32-10 (Salmon, Moraes, Dror, Shaw, "Parallel random
+// numbers: as easy as 1, 2, 3", SC 2011); known-answer vectors in tests/base/random_test.cpp.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "knotwave/base/rt.h"
+
+namespace knotwave::base {
+
+/// The ten-round Philox4x32 block function. [any] Cost about 40 integer operations.
+std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
+                                        std::array<std::uint32_t, 2> key) KNOTWAVE_RT;
+
+/// A named stream of random numbers.
+struct RandomStream {
+  std::uint64_t seed = 0;     ///< the patch seed
+  std::uint32_t voice = 0;    ///< which note, counted from engine time 0
+  std::uint32_t purpose = 0;  ///< one constant per use; see the enum below
+
+  /// Number `index` of the stream, uniform over 64 bits. [any]
+  std::uint64_t bits(std::uint64_t index) const KNOTWAVE_RT;
+  /// Uniform in [0, 1), 53 bits. [any]
+  double unit(std::uint64_t index) const KNOTWAVE_RT;
+  /// Uniform in [-1, 1), 54 bits. [any]
+  double bipolar(std::uint64_t index) const KNOTWAVE_RT;
+};
+
+/// Purposes in use; numbers never change, because they are part of the sound.
+enum RandomPurpose : std::uint32_t {
+  kRandomNoise = 1,
+  kRandomLfo = 2,
+  kRandomPhase = 3,
+  kRandomMap = 4,
+  kRandomDither = 5,
+};
+
+}  // namespace knotwave::base

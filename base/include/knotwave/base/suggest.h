@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// "Did you mean": the nearest known word to a wrong one. [control]
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace knotwave::base {
+
+/// The known word with the smallest edit distance (insert, delete, replace, swap neighbours), or
+/// empty if even that is more than a third of the word's length plus one away.
+std::string_view nearest_word(std::string_view word, std::span<const std::string_view> known);
+
+/// `; did you mean 'x'?` or empty: ready to append to an error message.
+std::string suggestion(std::string_view word, std::span<const std::string_view> known);
+
+}  // namespace knotwave::base

@@ -1,0 +1,11 @@
+# find_package(knotwave) and pkg-config for every module, the programs, and nothing else.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+get_property(modules GLOBAL PROPERTY KNOTWAVE_MODULES)
+foreach(module IN LISTS modules)
+  install(TARGETS knotwave_${module} EXPORT knotwave_targets FILE_SET HEADERS)
+endforeach()
+get_property(apps GLOBAL PROPERTY KNOTWAVE_APPS)
+if(apps)
+  install(TARGETS ${apps} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()

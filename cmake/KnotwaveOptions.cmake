@@ -1,0 +1,39 @@
+# What a user may switch, and the flags every target of ours is built with.
+option(KNOTWAVE_BUILD_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
+option(KNOTWAVE_BUILD_APPS "Build the programs" ${PROJECT_IS_TOP_LEVEL})
+option(KNOTWAVE_BUILD_EXAMPLES "Build the tutorial" ${PROJECT_IS_TOP_LEVEL})
+option(KNOTWAVE_BUILD_BENCH "Build the benchmarks" OFF)
+option(KNOTWAVE_ASSERTS "Keep KNOTWAVE_ASSERT on" ON)
+set(KNOTWAVE_SANITIZE "" CACHE STRING "Value for -fsanitize= (address,undefined or thread)")
+option(KNOTWAVE_RTSAN "Link the real-time sanitizer runtime into the tests" OFF)
+foreach(part SNDFILE PORTAUDIO RTMIDI)
+  set(KNOTWAVE_WITH_${part} AUTO CACHE STRING "AUTO, ON or OFF")
+  set_property(CACHE KNOTWAVE_WITH_${part} PROPERTY STRINGS AUTO ON OFF)
+endforeach()
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_VERIFY_INTERFACE_HEADER_SETS ${PROJECT_IS_TOP_LEVEL})
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+# Linked PRIVATE by every target of ours.
+add_library(knotwave_flags INTERFACE)
+target_compile_options(knotwave_flags INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor -Werror
+  # gcc 12 sees overflows in std::vector and std::string that are not there (GCC bugs 105562, 107852).
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-array-bounds -Wno-restrict -Wno-stringop-overread>
+  # The same bits from gcc and clang, at any -O level: see docs/architecture.md, Determinism.
+  -ffp-contract=off -fno-fast-math)
+if(KNOTWAVE_ASSERTS)
+  target_compile_definitions(knotwave_flags INTERFACE KNOTWAVE_ASSERTS=1)
+endif()
+if(KNOTWAVE_SANITIZE)
+  target_compile_options(knotwave_flags INTERFACE -fsanitize=${KNOTWAVE_SANITIZE}
+    -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${KNOTWAVE_SANITIZE})
+endif()

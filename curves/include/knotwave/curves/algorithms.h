@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Edits that do not change the curve: exact in the reals, within 4 ulp of max|P| in double.
+// Source: Piegl & Tiller, The NURBS Book, 2nd ed.: A5.1 insertion, A5.6 decomposition.
+#pragma once
+#include <vector>
+
+#include "knotwave/curves/nurbs_curve.h"
+
+namespace knotwave::curves {
+
+/// One span as a rational Bézier segment over [u0, u1].
+struct BezierSegment {
+  double u0 = 0;
+  double u1 = 1;
+  int degree = 0;
+  int dim = 0;
+  std::vector<double> points;   ///< [(degree+1)*dim], not pre-weighted
+  std::vector<double> weights;  ///< [degree+1]
+};
+
+/// Inserts knot u `times` times (Boehm; A5.1). [control] Errors: parameter_out_of_range (u not
+/// inside the domain, ends excluded unless the curve is unclamped there), knot_multiplicity (the
+/// result would exceed p). A periodic curve stays periodic.
+Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times = 1);
+
+/// The part over [u_a, u_b], clamped at both ends. [control] Errors: parameter_out_of_range,
+/// empty_domain. At a jump the part takes the side that lies inside it.
+Result<NurbsCurve> sub_curve(const NurbsCurve& curve, double u_a, double u_b);
+
+struct CurvePair {
+  NurbsCurve left;
+  NurbsCurve right;
+};
+/// Both parts at u. [control] Errors: parameter_out_of_range (u not strictly inside).
+Result<CurvePair> split(const NurbsCurve& curve, double u);
+
+/// Bézier segments in order, one a span of positive length (A5.6). [control]
+std::vector<BezierSegment> to_bezier(const NurbsCurve& curve);
+
+/// de Casteljau: value of a rational Bézier segment at u, clamped to [u0, u1], to out[dim]. [any]
+void de_casteljau(const BezierSegment& segment, double u, std::span<double> out) noexcept;
+
+/// de Boor in homogeneous coordinates: an evaluation independent of NurbsCurve::evaluate. [any]
+void de_boor(const NurbsCurve& curve, double u, std::span<double> out) noexcept;
+
+/// Degree p + 1, same curve (A5.9). [control] Errors: degree_out_of_range.
+Result<NurbsCurve> elevate_degree(const NurbsCurve& curve);
+
+/// Greville abscissae [n]: the u where each control point pulls most. [control]
+std::vector<double> greville_abscissae(const NurbsCurve& curve);
+
+/// Least and greatest control point in one coordinate: the curve never leaves them. [control]
+struct HullRange {
+  double low = 0;
+  double high = 0;
+};
+HullRange hull_range(const NurbsCurve& curve, int coordinate = 0);
+
+/// Whether coordinate `coordinate` never decreases: decided by the Bernstein coefficients of its
+/// derivative, subdividing spans of mixed sign until certain. [control]
+bool is_non_decreasing(const NurbsCurve& curve, int coordinate = 0);
+
+}  // namespace knotwave::curves

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Curves to what the audio thread plays, with a measured error. [control] throughout.
+#pragma once
+#include <vector>
+
+#include "knotwave/curves/curve_program.h"
+#include "knotwave/curves/nurbs_curve.h"
+
+namespace knotwave::curves {
+
+/// Something a controller may move while the curve plays, with its range.
+struct ControlRange {
+  enum class Kind { weight, coordinate };
+  Kind kind = Kind::weight;
+  int point = 0;       ///< index as in the file, from 0
+  int coordinate = 0;  ///< for Kind::coordinate
+  double low = 0;      ///< absolute values: the weight or the coordinate itself
+  double high = 1;
+};
+
+struct CompileOptions {
+  double max_error = 1e-7;  ///< largest |program - curve| asked for, in output units (-140 dBFS)
+  int max_pieces = 4096;    ///< more is an error (error_bound_missed), never a silent coarsening
+  std::vector<ControlRange> controls;
+};
+
+/// A curve as a function. dim 1: u is the parameter, degree <= 7 stays exact, above that pieces of
+/// degree 7 are fitted and checked. dim 2: x is the parameter (time) and y the value, the inversion
+/// is baked into explicit pieces (u_min = x at the start); vertical tangents are allowed.
+/// Errors: not_a_function (x goes back: the message gives the interval of u), not_scalar (dim > 2),
+/// error_bound_missed, control_conflict (point and weight of the same index, or two controls for
+/// the same number), value_out_of_range (a control's range leaves the limits of curve files),
+/// unsupported (controls on a 2-D curve or on degree > 7).
+Result<CurveProgram> compile_function(const NurbsCurve& curve, const CompileOptions& options = {});
+
+/// Every coordinate as a function of u (waveforms, orbits, arcs). Errors as above but
+/// not_a_function and not_scalar.
+Result<CurveProgram> compile_parametric(const NurbsCurve& curve,
+                                        const CompileOptions& options = {});
+
+/// The polynomial form: like compile_parametric, but rational spans become polynomial pieces within
+/// max_error as well. For Fourier coefficients and antiderivatives.
+Result<CurveProgram> compile_polynomial(const NurbsCurve& curve,
+                                        const CompileOptions& options = {});
+
+/// What it takes to start a section of a curve from any value and slope: the first two (rational)
+/// basis functions of the section [u_join, u_end], as programs. A join at value y0 and slope s
+/// plays
+///   program(u) + dp0 * basis0(u) + dp1 * basis1(u),
+/// which begins at y0 with slope s and, past the first p spans of the section, is the program to
+/// the bit (both bases are exactly 0 there).
+struct JoinProgram {
+  double u_join = 0;
+  CurveProgram basis;        ///< dim 2: basis0, basis1, over [u_join, u_end]
+  double u_basis_end = 0;    ///< from here on both are 0
+  double p0 = 0, p1 = 0;     ///< first two control points of the section
+  double slope_factor = 1;   ///< slope at u_join by u = slope_factor * (p1 - p0)
+  double low = 0, high = 1;  ///< hull that p1 is limited to
+
+  struct Deltas {
+    double dp0 = 0;
+    double dp1 = 0;
+    bool limited = false;  ///< p1 hit the hull: C0 join, slope as near as the hull allows
+  };
+  /// [audio] value0: where the output is; slope0: its slope by u of this section.
+  Deltas join(double value0, double slope0) const KNOTWAVE_RT;
+  /// Starts at value0 and leaves the slope to the curve (C0). [audio]
+  Deltas join_c0(double value0) const KNOTWAVE_RT;
+};
+
+/// dim 1 or 2 (function form), degree <= 7. u_join is a parameter of the compiled function (for 2-D
+/// curves a time). Errors: parameter_out_of_range, and those of compile_function.
+Result<JoinProgram> compile_join(const NurbsCurve& curve, double u_join,
+                                 const CompileOptions& options = {});
+
+}  // namespace knotwave::curves

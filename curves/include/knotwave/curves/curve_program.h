@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// What the audio thread plays: explicit polynomial pieces, or quotients of two, in a local
+// parameter t in [0, 1]. Immutable, made by compile.h; copying is cheap to reason about but
+// allocates, so it is [control].
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "knotwave/base/rt.h"
+#include "knotwave/curves/map_grid.h"
+
+namespace knotwave::curves {
+
+inline constexpr int kMaxPieceDegree = 7;
+inline constexpr int kMaxControls = 8;
+
+/// The piece last used. Only a hint: any value gives the same samples. One per voice and program.
+struct CurveCursor {
+  int piece = 0;
+};
+
+class CurveProgram {
+ public:
+  CurveProgram();  ///< the constant 0 on [0, 1]
+
+  int dim() const KNOTWAVE_RT { return dim_; }
+  int piece_count() const KNOTWAVE_RT { return static_cast<int>(breaks_.size()) - 1; }
+  int piece_degree() const KNOTWAVE_RT { return degree_; }
+  bool is_rational() const KNOTWAVE_RT { return rational_; }
+  bool is_periodic() const KNOTWAVE_RT { return periodic_; }
+  double u_min() const KNOTWAVE_RT { return breaks_.front(); }
+  double u_max() const KNOTWAVE_RT { return breaks_.back(); }
+  /// Where pieces meet, [piece_count + 1], increasing.
+  std::span<const double> breaks() const KNOTWAVE_RT { return breaks_; }
+  /// Largest |program - curve| found by the check in compile(), in output units. 0 controls moved
+  /// and at the corners of their ranges.
+  double max_error() const noexcept { return max_error_; }
+  int control_count() const KNOTWAVE_RT { return static_cast<int>(control_rest_.size()); }
+  /// Control k when nothing moves it: the value written in the file. And its declared range.
+  double control_rest(int k) const KNOTWAVE_RT { return control_rest_[std::size_t(k)]; }
+  double control_low(int k) const KNOTWAVE_RT { return control_low_[std::size_t(k)]; }
+  double control_high(int k) const KNOTWAVE_RT { return control_high_[std::size_t(k)]; }
+  /// The range the output never leaves: the hull of the control points over all controls.
+  double low(int coordinate = 0) const KNOTWAVE_RT { return low_[std::size_t(coordinate)]; }
+  double high(int coordinate = 0) const KNOTWAVE_RT { return high_[std::size_t(coordinate)]; }
+
+  /// Value of one coordinate at u. [audio] u is clamped to the domain (wrapped if periodic), NaN
+  /// counts as u_min. At an inner break with a jump, the right-hand value. `controls`
+  /// [control_count] or empty for rest values; each clamped to its range, NaN = rest.
+  double at_u(double u, int coordinate = 0,
+              std::span<const double> controls = {}) const KNOTWAVE_RT;
+  /// Derivative by u, right-hand (left-hand at u_max). [audio]
+  double slope_at_u(double u, int coordinate = 0,
+                    std::span<const double> controls = {}) const KNOTWAVE_RT;
+
+  /// out[i] = at_u(run.at(i)) to the bit. [audio] Cost well under 1 ns a sample for long spans.
+  void render(const GridRun& run, std::span<double> out, CurveCursor& cursor,
+              int coordinate = 0) const KNOTWAVE_RT;
+  void render(const GridRun& run, std::span<float> out, CurveCursor& cursor,
+              int coordinate = 0) const KNOTWAVE_RT;
+  /// out[i] = at_u(u[i]) to the bit: any parameters, in any order. [audio]
+  void render(std::span<const double> u, std::span<double> out, CurveCursor& cursor,
+              int coordinate = 0) const KNOTWAVE_RT;
+  /// The same with controls that move every sample: controls[k][i], k < control_count. [audio]
+  void render(std::span<const double> u, std::span<const double* const> controls,
+              std::span<double> out, CurveCursor& cursor, int coordinate = 0) const KNOTWAVE_RT;
+
+  /// out[i] = at_u(grid.at(first + i)) to the bit, the ends exact. [any]
+  void evaluate_grid(const MapGrid& grid, std::int64_t first,
+                     std::span<float> out) const KNOTWAVE_RT;
+
+ private:
+  friend class ProgramBuilder;  // src/program_builder.h, what compile() fills it with
+
+  // Layout: coefficients_[((piece * (1 + controls) + term) * (dim + rational) + row) * (degree+1)
+  // + power]; row dim is the denominator. Term 0 is the rest curve, term k + 1 what control k adds
+  // for each unit it is moved from rest: (N0 + sum m_k N_k) / (D0 + sum m_k D_k).
+  int dim_ = 1;
+  int degree_ = 0;
+  bool rational_ = false;
+  bool periodic_ = false;
+  double max_error_ = 0;
+  std::vector<double> breaks_;
+  std::vector<double> inverse_widths_;
+  std::vector<double> coefficients_;
+  std::vector<double> low_, high_;
+  std::vector<double> control_rest_, control_low_, control_high_;
+};
+
+/// Which vector unit grids are rendered with. Both give the same bits; tests and benchmarks choose.
+enum class SimdLevel { best, baseline };
+/// [control], before any audio runs.
+void set_simd_level(SimdLevel level);
+/// The name of what is in use, such as AVX2 or SSE2. [control]
+const char* simd_level_name();
+
+}  // namespace knotwave::curves

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// A curve as a picture a musician can read: curve, control polygon, knots, weights; a surface as a
+// shaded grid. [control]
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "knotwave/curves/nurbs_curve.h"
+#include "knotwave/curves/nurbs_surface.h"
+
+namespace knotwave::curves {
+
+struct PlotOptions {
+  int width_px = 960;
+  int height_px = 540;
+  bool control_polygon = true;
+  bool knots = true;
+  bool weights = true;
+};
+
+std::string plot_svg(const NurbsCurve& curve, const PlotOptions& options = {});
+std::string plot_svg(const NurbsSurface& surface, const PlotOptions& options = {});
+/// The same picture as PNG bytes.
+std::vector<std::uint8_t> plot_png(const NurbsCurve& curve, const PlotOptions& options = {});
+std::vector<std::uint8_t> plot_png(const NurbsSurface& surface, const PlotOptions& options = {});
+/// The curve as text, `columns` by `rows` characters, for a terminal.
+std::string plot_text(const NurbsCurve& curve, int columns = 72, int rows = 14);
+
+}  // namespace knotwave::curves

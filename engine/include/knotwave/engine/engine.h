@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The engine: events in, samples out, the same bits for any block size and number of threads. It
+// knows no device and no file.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "knotwave/base/result.h"
+#include "knotwave/engine/bank_program.h"
+#include "knotwave/engine/event.h"
+
+namespace knotwave::engine {
+
+struct EngineConfig {
+  double rate_hz = 48000;  ///< 8000..768000
+  int max_voices = 128;    ///< sounding at once; as many again may be fading out
+  std::uint64_t seed = 1;  ///< of the performance; joined with each patch's own
+  int threads = 1;         ///< 1..64; more than 1 uses workers (offline)
+  double volume_db = 0;    ///< master
+};
+
+/// Counters the audio thread keeps; read them between process() calls.
+struct EngineCounters {
+  std::int64_t notes = 0;
+  std::int64_t voices_stolen = 0;
+  std::int64_t notes_dropped = 0;  ///< no voice and no fading place
+  std::int64_t events_late = 0;    ///< before the block; played at its first sample
+  std::int64_t events_unknown = 0;
+  std::int64_t joins_limited = 0;  ///< C1 was not possible within the hull
+  int voices_now = 0;
+  int voices_peak = 0;
+};
+
+class Engine {
+ public:
+  /// [control] `bank` must outlive the engine or its replacement by an install_bank event.
+  /// Errors: value_out_of_range.
+  static Result<std::unique_ptr<Engine>> create(const EngineConfig& config,
+                                                const BankProgram* bank);
+  ~Engine();
+
+  /// Renders the next out_left.size() samples. [audio] `events` are sorted by time; those at or
+  /// past the end of the block must not be given. left and right are overwritten.
+  void process(std::span<const Event> events, std::span<float> left,
+               std::span<float> right) KNOTWAVE_RT;
+
+  /// Buffers for each of the 16 channels, or none: channel c's own sound of the last process() goes
+  /// to stems[c] as left and right [2][n]; their sum in channel order is the mix to the bit.
+  /// [control]
+  struct Stem {
+    std::span<float> left, right;
+  };
+  void process(std::span<const Event> events, std::span<float> left, std::span<float> right,
+               std::span<const Stem> stems) KNOTWAVE_RT;
+
+  /// No voice sounds or will sound without a new event. [audio]
+  bool is_idle() const KNOTWAVE_RT;
+  /// The next sample to be rendered. [audio]
+  std::int64_t now() const KNOTWAVE_RT;
+  const EngineCounters& counters() const KNOTWAVE_RT;
+  /// Engine time 0, all state as after create(). [control, stopped]
+  void reset();
+
+ private:
+  struct State;
+  explicit Engine(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace knotwave::engine

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// What the engine is told, with its time: MIDI, tempo, and patch changes are all events, so a
+// journal of them is the whole performance.
+#pragma once
+#include <cstdint>
+
+#include "knotwave/base/midi_event.h"
+
+namespace knotwave::engine {
+
+class BankProgram;
+
+struct Event {
+  enum class Kind : std::uint8_t { midi, tempo, install_bank, all_notes_off };
+  Kind kind = Kind::midi;
+  base::MidiEvent midi;  ///< Kind::midi; midi.time is the time of every kind
+  std::uint32_t microseconds_per_quarter = 500000;  ///< Kind::tempo
+  const BankProgram* bank = nullptr;  ///< Kind::install_bank; kept alive by the caller
+
+  base::SampleTime time() const KNOTWAVE_RT { return midi.time; }
+};
+
+}  // namespace knotwave::engine

@@ -32,6 +32,8 @@ struct OscillatorSpec {
   double phase_cycles = 0;
   bool random_phase = false;  ///< from the patch seed and the note
   double pan = 0.5;           ///< 0 left .. 1 right
+  std::string envelope;  ///< an envelope of the patch that multiplies this source alone; "" none
+  double ratio = 1;      ///< multiplies the frequency, 0.01..100
 };
 
 struct EnvelopeUse {
@@ -118,6 +120,7 @@ struct PatchSpec {
   std::vector<OscillatorSpec> oscillators;
   double noise_db = -200;  ///< noise source, off at -200
   double noise_pan = 0.5;
+  std::string noise_envelope;  ///< as OscillatorSpec::envelope
   bool crossfade_on = false;
   int crossfade_a = 0, crossfade_b = 1;
   double crossfade_position = 0;
@@ -171,6 +174,9 @@ struct BankSpec {
 /// exist). A patch becomes a bank of one entry that plays all programs, drums too. Errors: those of
 /// curve files, unknown_name, cyclic_reference, file_not_found; all with file, line and column.
 Result<BankSpec> read_bank(const std::string& path);
+
+/// A bank of one entry that plays `patch` for every program and for drums.
+BankSpec bank_of(PatchSpec patch);
 
 /// A patch from text; files are looked up beside `source_name`. For tests, fuzzers and demos.
 Result<PatchSpec> parse_patch(std::string_view text, std::string_view source_name);

@@ -10,6 +10,7 @@
 #include "knotwave/dsp/envelope.h"
 #include "knotwave/dsp/filter.h"
 #include "knotwave/dsp/lfo.h"
+#include "knotwave/engine/tuning.h"
 
 namespace knotwave::engine {
 
@@ -22,7 +23,7 @@ inline constexpr int kMaxMaps = 32;
 struct OscillatorSpec {
   std::string name;
   std::string wave;       ///< a curve or surface of the patch
-  std::string wave_file;  ///< or a sound file of cycles, beside the patch
+  std::string wave_file;  ///< or a sound file of cycles: the path to open
   int wave_frame = 0;     ///< frames of a cycle in wave_file; 0 = from the file
   double level_db = 0;    ///< -96 or less is silence
   double transpose_semitones = 0;
@@ -115,14 +116,15 @@ enum class NotePriority { last, low, high };
 
 struct PatchSpec {
   std::string name;
+  std::string about;        ///< one line for people, or empty
   std::string source_name;  ///< file, for messages
-  curves::CurveSet curves;
+  curves::CurveSet curves;  ///< its own, those of its curve files, and the built-in ones it uses
   std::vector<OscillatorSpec> oscillators;
   double noise_db = -200;  ///< noise source, off at -200
   double noise_pan = 0.5;
   std::string noise_envelope;  ///< as OscillatorSpec::envelope
   bool crossfade_on = false;
-  int crossfade_a = 0, crossfade_b = 1;
+  int crossfade_a = 0, crossfade_b = 1;  ///< oscillators; kMaxOscillators = noise
   double crossfade_position = 0;
   std::string crossfade_law;  ///< "" equal power, "linear", or a curve
   std::string shaper_curve;   ///< "" = no shaper
@@ -145,7 +147,8 @@ struct PatchSpec {
   std::string glide_curve;  ///< 0..1 over 0..1; "" = the built-in S
   double bend_semitones = 2;
   double velocity_db = 24;  ///< how much softer velocity 1 is than 127, when no map does it
-  std::string tuning_file, keymap_file;  ///< .scl, .kbm
+  std::string tuning_file, keymap_file;  ///< .scl, .kbm: paths, or empty
+  Tuning tuning;                         ///< what they say
   std::uint64_t seed = 1;
 };
 
@@ -170,9 +173,11 @@ struct BankSpec {
   std::vector<int> entry_patch;    ///< [entries.size()] index into patches
 };
 
-/// Reads a patch or a bank and every file it names (curve files, sound files are only checked to
-/// exist). A patch becomes a bank of one entry that plays all programs, drums too. Errors: those of
-/// curve files, unknown_name, cyclic_reference, file_not_found; all with file, line and column.
+/// Reads a patch or a bank and every file it names, each once (sound files are only checked to
+/// exist). A patch becomes a bank of one entry that plays all programs, and no drum channel, so
+/// that it plays channel 10 too. Errors: those of curve files, unknown_name, duplicate_name,
+/// cyclic_reference, control_conflict, not_scalar, not_a_function, file_not_found, unsupported
+/// (kind "envelope"); all with file, line and column.
 Result<BankSpec> read_bank(const std::string& path);
 
 /// A bank of one entry that plays `patch` for every program and for drums.

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// What one MIDI channel has been told: controllers with their fine halves, registered parameters,
+// bend, pressure, pedals and programs. Knows no note and no voice. docs/engine.md lists every
+// message.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "knotwave/base/rt.h"
+
+namespace knotwave::engine {
+
+/// Controller numbers the engine itself gives a meaning to.
+enum Controller : int {
+  kBankMsb = 0,
+  kDataEntryMsb = 6,
+  kVolume = 7,
+  kPan = 10,
+  kExpression = 11,
+  kBankLsb = 32,
+  kDataEntryLsb = 38,
+  kSustain = 64,
+  kSostenuto = 66,
+  kSoft = 67,
+  kTimbre = 74,
+  kDataIncrement = 96,
+  kDataDecrement = 97,
+  kNrpnLsb = 98,
+  kNrpnMsb = 99,
+  kRpnLsb = 100,
+  kRpnMsb = 101,
+  kAllSoundOff = 120,
+  kResetControllers = 121,
+  kAllNotesOff = 123,
+  kOmniOff = 124,
+  kOmniOn = 125,
+  kMonoOn = 126,
+  kPolyOn = 127,
+};
+
+/// One channel's memory. All [audio]; data bytes above 127 are cut to 7 bits.
+class ChannelState {
+ public:
+  /// What a control change asks of the notes of the channel.
+  enum class Effect : std::uint8_t {
+    none,
+    pedals,         ///< sustain or sostenuto moved
+    all_sound_off,  ///< silence at once
+    all_notes_off,  ///< keys up; pedals still hold
+    mpe_zone,       ///< RPN 6: members() channels
+  };
+
+  ChannelState() KNOTWAVE_RT { reset(); }
+  /// Power-on values: volume 100, expression 127, pan and timbre centre, program and bank 0.
+  void reset() KNOTWAVE_RT;
+  /// CC 121 as MMA RP-015 has it: modulation, expression, pedals, bend, pressures and the parameter
+  /// selection go back; volume, pan, sound controllers, bank, program and tuning stay.
+  void reset_controllers() KNOTWAVE_RT;
+
+  Effect control_change(int controller, int value) KNOTWAVE_RT;
+  void program_change(int program) KNOTWAVE_RT;
+  void pitch_bend(int lsb, int msb) KNOTWAVE_RT { bend_ = ((msb & 127) << 7) | (lsb & 127); }
+  void channel_pressure(int value) KNOTWAVE_RT { channel_pressure_ = value & 127; }
+  void poly_pressure(int key, int value) KNOTWAVE_RT;
+  /// A new note starts without the pressure its key had before.
+  void forget_poly_pressure(int key) KNOTWAVE_RT { poly_pressure(key, 0); }
+  /// Used when a zone is set up. [audio]
+  void set_bend_range(double semitones) KNOTWAVE_RT { bend_range_semitones_ = semitones; }
+
+  /// 0..1. Controllers 0..31 have 14 bits once their fine half (32..63) was heard, else 7.
+  double control(int controller) const KNOTWAVE_RT;
+  /// -1..1; 8192 is exactly 0, 0 exactly -1 and 16383 exactly 1.
+  double bend() const KNOTWAVE_RT;
+  /// RPN 0 in semitones, or `fallback` while none was heard.
+  double bend_range_semitones(double fallback) const KNOTWAVE_RT {
+    return bend_range_semitones_ < 0 ? fallback : bend_range_semitones_;
+  }
+  /// RPN 1 and 2 together.
+  double tuning_semitones() const KNOTWAVE_RT;
+  double pressure() const KNOTWAVE_RT { return channel_pressure_ / 127.0; }
+  double poly_pressure(int key) const KNOTWAVE_RT {
+    return poly_pressure_[static_cast<std::size_t>(key & 127)] / 127.0;
+  }
+  /// (CC 7 * CC 11)^2, the 40 log10 law of General MIDI; 1 with both full.
+  double volume_gain() const KNOTWAVE_RT;
+  /// CC 10 as 0..1: 0 and 1 are hard left, 64 exactly 0.5, 127 hard right.
+  double pan_position() const KNOTWAVE_RT;
+
+  bool sustain() const KNOTWAVE_RT { return coarse_[kSustain] >= 64; }
+  bool sostenuto() const KNOTWAVE_RT { return coarse_[kSostenuto] >= 64; }
+  bool soft() const KNOTWAVE_RT { return coarse_[kSoft] >= 64; }
+  bool timbre_was_sent() const KNOTWAVE_RT { return timbre_sent_; }
+  int program() const KNOTWAVE_RT { return program_; }
+  /// The bank selected when the program was chosen.
+  int bank_msb() const KNOTWAVE_RT { return bank_msb_; }
+  int bank_lsb() const KNOTWAVE_RT { return bank_lsb_; }
+  int mpe_members() const KNOTWAVE_RT { return mpe_members_; }
+  void release_pedals() KNOTWAVE_RT { coarse_[kSustain] = coarse_[kSostenuto] = 0; }
+
+ private:
+  Effect data_entry(bool coarse, int value) KNOTWAVE_RT;
+  void step_data(int step) KNOTWAVE_RT;
+  void store(int controller, int value) KNOTWAVE_RT;
+
+  static constexpr int kNoParameter = 0x3FFF;  ///< RPN 127/127, the null parameter
+
+  std::array<std::uint8_t, 128> coarse_;
+  std::array<std::uint8_t, 32> fine_;
+  std::array<bool, 32> has_fine_;
+  std::array<std::uint8_t, 128> poly_pressure_;
+  int bend_;
+  int channel_pressure_;
+  int program_, bank_msb_, bank_lsb_;
+  int parameter_;                ///< the selected RPN
+  bool registered_;              ///< the last selection was an RPN, not an NRPN
+  double bend_range_semitones_;  ///< < 0: never set
+  int bend_range_cents_;
+  int fine_tuning_;    ///< 14 bits, 8192 = 0
+  int coarse_tuning_;  ///< 7 bits, 64 = 0
+  int mpe_members_;
+  bool timbre_sent_;
+};
+
+}  // namespace knotwave::engine

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The keys that hold a monophonic instrument, in the order they were pressed, with what keeps each
+// of them: the key itself or a pedal. All [audio].
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "knotwave/base/rt.h"
+#include "knotwave/engine/patch.h"
+
+namespace knotwave::engine {
+
+/// At most one entry a key, so it cannot overflow.
+class NoteStack {
+ public:
+  struct Entry {
+    std::uint8_t key = 0;
+    std::uint8_t velocity = 0;
+    bool key_down = false;
+    bool sostenuto = false;
+  };
+
+  void clear() KNOTWAVE_RT { size_ = 0; }
+  bool is_empty() const KNOTWAVE_RT { return size_ == 0; }
+  int size() const KNOTWAVE_RT { return size_; }
+  /// Pressed (again): moves to the newest place.
+  void press(int key, int velocity) KNOTWAVE_RT;
+  /// The key goes up; it stays while `sustain` or its sostenuto holds it. True if it was down.
+  bool lift(int key, bool sustain) KNOTWAVE_RT;
+  /// Sostenuto goes down: holds the keys that are down now.
+  void catch_sostenuto() KNOTWAVE_RT;
+  void drop_sostenuto(bool sustain) KNOTWAVE_RT;
+  /// Sustain goes up: keys that only it held leave.
+  void drop_sustain() KNOTWAVE_RT;
+  /// Every key goes up.
+  void lift_all(bool sustain) KNOTWAVE_RT;
+  /// The entry that sounds, or null when empty. Keys that are down go before those a pedal holds.
+  const Entry* choose(NotePriority priority) const KNOTWAVE_RT;
+
+ private:
+  void erase(int index) KNOTWAVE_RT;
+  void drop_if(bool sustain) KNOTWAVE_RT;
+
+  std::array<Entry, 128> entries_;
+  int size_ = 0;
+};
+
+}  // namespace knotwave::engine

@@ -1,2 +1,228 @@
 // SPDX-License-Identifier: MIT
+// Reading and writing of whole files through POSIX calls, every result checked.
 #include "knotwave/base/file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <system_error>
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "unfinished_files.h"
+
+namespace knotwave::base {
+namespace {
+
+constexpr std::string_view kPartMark = ".part-";
+
+Error system_error(int number, const std::string& what) {
+  const bool full = number == ENOSPC || number == EDQUOT;
+  return fail(full ? ErrorCode::disk_full : ErrorCode::io_failed,
+              what + ": " + std::generic_category().message(number));
+}
+
+Error read_error(ErrorCode code, const std::string& path, std::string message) {
+  Error error = fail(code, std::move(message));
+  error.source = path;
+  return error;
+}
+
+/// A descriptor closed on the way out.
+struct Descriptor {
+  int value = -1;
+  explicit Descriptor(int descriptor) : value(descriptor) {}
+  ~Descriptor() {
+    if (value >= 0) ::close(value);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+};
+
+std::string folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+std::string name_of(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
+/// The process id at the end of `entry` if it is NAME.part-PID, else 0.
+pid_t part_owner(std::string_view entry, std::string_view name) {
+  if (!entry.starts_with(name)) return 0;
+  entry.remove_prefix(name.size());
+  if (!entry.starts_with(kPartMark)) return 0;
+  entry.remove_prefix(kPartMark.size());
+  pid_t owner = 0;
+  const auto [end, code] = std::from_chars(entry.data(), entry.data() + entry.size(), owner);
+  return code == std::errc{} && end == entry.data() + entry.size() ? owner : 0;
+}
+
+/// A process id says little across containers that share a folder, so the writer's lock counts too.
+bool is_abandoned(const std::string& part_path, pid_t owner) {
+  if (owner == ::getpid()) return !is_unfinished_here(part_path);
+  if (::kill(owner, 0) == 0 || errno != ESRCH) return false;
+  const Descriptor part(::open(part_path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
+  return part.value >= 0 && ::flock(part.value, LOCK_EX | LOCK_NB) == 0;
+}
+
+void sweep_abandoned_parts(const std::string& path) {
+  const std::string folder = folder_of(path);
+  const std::string name = name_of(path);
+  const std::unique_ptr<DIR, int (*)(DIR*)> stream(::opendir(folder.c_str()), ::closedir);
+  if (!stream) return;
+  while (const dirent* entry = ::readdir(stream.get())) {
+    const pid_t owner = part_owner(entry->d_name, name);
+    const std::string part_path = path.substr(0, path.size() - name.size()) + entry->d_name;
+    if (owner > 0 && is_abandoned(part_path, owner)) ::unlink(part_path.c_str());
+  }
+}
+
+/// The place a link points to, so that writing replaces the file and not the link.
+Result<std::string> final_place(const std::string& path) {
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) != 0) return path;
+  if (!S_ISLNK(info.st_mode)) return path;
+  const std::unique_ptr<char, void (*)(void*)> resolved(::realpath(path.c_str(), nullptr),
+                                                        std::free);
+  if (!resolved) return system_error(errno, "cannot follow the link '" + path + "'");
+  return std::string(resolved.get());
+}
+
+Result<void> write_all(int descriptor, std::span<const std::byte> bytes, const std::string& path) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return system_error(errno, "cannot write '" + path + "'");
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.value < 0) {
+    const bool missing = errno == ENOENT || errno == ENOTDIR;
+    return read_error(missing ? ErrorCode::file_not_found : ErrorCode::io_failed, path,
+                      missing ? "no such file" : std::generic_category().message(errno));
+  }
+  struct stat info {};
+  if (::fstat(file.value, &info) == 0 && S_ISDIR(info.st_mode)) {
+    return read_error(ErrorCode::io_failed, path, "is a folder, not a file");
+  }
+  const auto too_large = [&](const std::string& size) {
+    return read_error(
+        ErrorCode::file_too_large, path,
+        "the file has " + size + " bytes; at most " + std::to_string(max_bytes) + " are read");
+  };
+  if (S_ISREG(info.st_mode) && static_cast<std::uintmax_t>(info.st_size) > max_bytes) {
+    return too_large(std::to_string(info.st_size));
+  }
+  std::string bytes;
+  for (;;) {
+    constexpr std::size_t kChunk = 1 << 16;
+    const std::size_t before = bytes.size();
+    bytes.resize(before + kChunk);
+    const ssize_t count = ::read(file.value, bytes.data() + before, kChunk);
+    if (count < 0 && errno != EINTR) {
+      return read_error(ErrorCode::io_failed, path, std::generic_category().message(errno));
+    }
+    bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    if (bytes.size() > max_bytes) return too_large("more than " + std::to_string(max_bytes));
+    if (count == 0) return bytes;
+  }
+}
+
+Result<AtomicFile> AtomicFile::create(const std::string& path) {
+  const Result<std::string> place = final_place(path);
+  if (!place) return place.error();
+  AtomicFile file;
+  file.path_ = *place;
+  struct stat old {};
+  const bool exists = ::stat(file.path_.c_str(), &old) == 0;
+  if (file.path_.empty() || file.path_.back() == '/' || (exists && S_ISDIR(old.st_mode))) {
+    return fail(ErrorCode::io_failed, "cannot write '" + path + "': it is a folder, not a file");
+  }
+  if (exists && !S_ISREG(old.st_mode)) {
+    return fail(ErrorCode::io_failed,
+                "cannot write '" + path + "': it is a device or pipe, not a file");
+  }
+  sweep_abandoned_parts(file.path_);
+  const std::string part_path = file.path_ + std::string(kPartMark) + std::to_string(::getpid());
+  if (is_unfinished_here(part_path)) {
+    return fail(ErrorCode::io_failed, "cannot write '" + path + "': it is being written already");
+  }
+  file.slot_ = note_unfinished_file(part_path);
+  if (file.slot_ < 0) {
+    return fail(ErrorCode::io_failed, "cannot write '" + path + "': more than " +
+                                          std::to_string(kMaxUnfinishedFiles) +
+                                          " files at once, or a path over 4095 bytes");
+  }
+  file.descriptor_ =
+      ::open(part_path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (file.descriptor_ < 0) {
+    return system_error(errno, "cannot write into folder '" + folder_of(file.path_) + "'");
+  }
+  file.part_path_ = part_path;
+  ::flock(file.descriptor_, LOCK_EX | LOCK_NB);  // tells sweepers that the writer lives
+  if (exists) ::fchmod(file.descriptor_, old.st_mode & 07777);
+  return file;
+}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept { *this = std::move(other); }
+
+AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(part_path_, other.part_path_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(slot_, other.slot_);
+  return *this;
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) {
+    ::unlink(part_path_.c_str());
+    ::close(descriptor_);
+  }
+  forget_unfinished_file(slot_);
+}
+
+Result<void> AtomicFile::write(std::span<const std::byte> bytes) {
+  KNOTWAVE_ASSERT(descriptor_ >= 0);
+  return write_all(descriptor_, bytes, path_);
+}
+
+Result<void> AtomicFile::commit() {
+  KNOTWAVE_ASSERT(descriptor_ >= 0);
+  const std::string what = "cannot write '" + path_ + "'";
+  if (::fsync(descriptor_) != 0) return system_error(errno, what);
+  if (::rename(part_path_.c_str(), path_.c_str()) != 0) return system_error(errno, what);
+  const int closed = ::close(std::exchange(descriptor_, -1));
+  forget_unfinished_file(std::exchange(slot_, -1));
+  if (closed != 0) return system_error(errno, what);
+  // Some file systems cannot sync a folder and say EINVAL; the name is then as durable as they go.
+  const Descriptor folder(::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder.value >= 0 && ::fsync(folder.value) != 0 && errno != EINVAL) {
+    return system_error(errno, what);
+  }
+  return {};
+}
+
+Result<void> write_file(const std::string& path, std::string_view bytes) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return file.error();
+  if (Result<void> written = file->write(std::as_bytes(std::span(bytes))); !written) return written;
+  return file->commit();
+}
+
+}  // namespace knotwave::base

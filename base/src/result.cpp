@@ -1,2 +1,77 @@
 // SPDX-License-Identifier: MIT
+// Names of error codes, the text of an error, and the end of a failed assertion.
 #include "knotwave/base/result.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace knotwave::base {
+
+void assertion_failed(const char* claim, const char* file, int line) noexcept {
+  std::fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, claim);
+  std::abort();
+}
+
+const char* to_string(ErrorCode code) noexcept {
+  switch (code) {
+#define KNOTWAVE_NAME(name) \
+  case ErrorCode::name:     \
+    return #name
+    KNOTWAVE_NAME(degree_out_of_range);
+    KNOTWAVE_NAME(too_few_points);
+    KNOTWAVE_NAME(too_many_points);
+    KNOTWAVE_NAME(dimension_mismatch);
+    KNOTWAVE_NAME(knot_count_mismatch);
+    KNOTWAVE_NAME(knots_decrease);
+    KNOTWAVE_NAME(knot_multiplicity);
+    KNOTWAVE_NAME(empty_domain);
+    KNOTWAVE_NAME(weight_count_mismatch);
+    KNOTWAVE_NAME(weight_not_positive);
+    KNOTWAVE_NAME(weight_out_of_range);
+    KNOTWAVE_NAME(coordinate_out_of_range);
+    KNOTWAVE_NAME(not_finite);
+    KNOTWAVE_NAME(parameter_out_of_range);
+    KNOTWAVE_NAME(not_a_function);
+    KNOTWAVE_NAME(not_scalar);
+    KNOTWAVE_NAME(not_closed);
+    KNOTWAVE_NAME(error_bound_missed);
+    KNOTWAVE_NAME(control_conflict);
+    KNOTWAVE_NAME(file_not_found);
+    KNOTWAVE_NAME(file_too_large);
+    KNOTWAVE_NAME(io_failed);
+    KNOTWAVE_NAME(disk_full);
+    KNOTWAVE_NAME(syntax);
+    KNOTWAVE_NAME(unknown_key);
+    KNOTWAVE_NAME(missing_key);
+    KNOTWAVE_NAME(wrong_type);
+    KNOTWAVE_NAME(value_out_of_range);
+    KNOTWAVE_NAME(unknown_name);
+    KNOTWAVE_NAME(duplicate_name);
+    KNOTWAVE_NAME(cyclic_reference);
+    KNOTWAVE_NAME(unsupported_version);
+    KNOTWAVE_NAME(unsupported_format);
+    KNOTWAVE_NAME(malformed);
+    KNOTWAVE_NAME(usage);
+    KNOTWAVE_NAME(interrupted);
+    KNOTWAVE_NAME(unsupported);
+#undef KNOTWAVE_NAME
+  }
+  return "unknown";
+}
+
+std::string Error::to_string() const {
+  std::string text;
+  if (!source.empty()) text += source + ":";
+  if (line > 0) {
+    text += std::to_string(line) + ":";
+    if (column > 0) text += std::to_string(column) + ":";
+  }
+  if (offset >= 0) {
+    if (!text.empty()) text += " ";
+    text += "byte " + std::to_string(offset) + ":";
+  }
+  if (!text.empty()) text += " ";
+  return text + "error: " + message;
+}
+
+}  // namespace knotwave::base

@@ -1,2 +1,55 @@
 // SPDX-License-Identifier: MIT
+// Edit distance with swaps of neighbours (the "optimal string alignment" form).
 #include "knotwave/base/suggest.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace knotwave::base {
+namespace {
+
+/// Longer words are not compared: the cost is the product of the lengths.
+constexpr std::size_t kMaxWord = 64;
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const std::size_t width = b.size() + 1;
+  std::vector<std::size_t> before(width), above(width), row(width);
+  for (std::size_t j = 0; j < width; ++j) above[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j < width; ++j) {
+      const std::size_t replace = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, replace});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    before.swap(above);
+    above.swap(row);
+  }
+  return above[b.size()];
+}
+
+}  // namespace
+
+std::string_view nearest_word(std::string_view word, std::span<const std::string_view> known) {
+  if (word.size() > kMaxWord) return {};
+  std::string_view best;
+  std::size_t best_distance = word.size() / 3 + 2;
+  for (const std::string_view candidate : known) {
+    if (candidate.size() > kMaxWord) continue;
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
+  const std::string_view nearest = nearest_word(word, known);
+  return nearest.empty() ? std::string{} : "; did you mean '" + std::string(nearest) + "'?";
+}
+
+}  // namespace knotwave::base

@@ -76,6 +76,11 @@ class TableReader {
   Result<void> finish();
 
  private:
+  const Node* required(std::string_view key);
+  double number_from(const Node& found, std::string_view key, double fallback, double low,
+                     double high);
+  std::string string_from(const Node& found, std::string_view key, std::string_view fallback);
+
   const Node& table_;
   std::string source_;
   std::string what_;

@@ -35,6 +35,7 @@ class AtomicFile {
   AtomicFile() = default;
   std::string path_, part_path_;
   int descriptor_ = -1;
+  int slot_ = -1;  ///< place in the table remove_unfinished_files() reads
 };
 
 /// Removes every unfinished file of this process. Async-signal-safe: for signal handlers. [any]

@@ -1,0 +1,147 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+# Derives the polynomials of knotwave/base/elementary.h with mpmath and writes them as hex floats to
+# base/include/knotwave/base/elementary_coefficients.h. With --check it compares instead of writing.
+#
+# Each polynomial interpolates at the Chebyshev points of its interval, weighted so that what is
+# small is the relative error of the function it serves; the printed error is measured on a fine
+# grid with the coefficients as rounded to double.
+import pathlib
+import sys
+
+from mpmath import mp, mpf, lu_solve, matrix
+
+mp.dps = 60
+TARGET = pathlib.Path(__file__).resolve().parent.parent / (
+    "base/include/knotwave/base/elementary_coefficients.h")
+
+
+def fit(f, low, high, count):
+    """`count` coefficients, lowest first, interpolating f at the Chebyshev points of low..high."""
+    nodes = [(low + high) / 2 + (high - low) / 2 * mp.cos(mp.pi * (2 * i + 1) / (2 * count))
+             for i in range(count)]
+    a = matrix(count, count)
+    b = matrix(count, 1)
+    for i, x in enumerate(nodes):
+        b[i] = f(x)
+        for k in range(count):
+            a[i, k] = x**k
+    return [float(c) for c in lu_solve(a, b)]
+
+
+def horner(coefficients, x):
+    total = mpf(0)
+    for c in reversed(coefficients):
+        total = total * x + mpf(c)
+    return total
+
+
+def worst(error, low, high):
+    return max(abs(error(low + (high - low) * mpf(i) / 1999)) for i in range(2000))
+
+
+def split(value, bits):
+    """value = high + low, high with `bits` significant bits."""
+    exponent = int(mp.floor(mp.log(abs(value), 2)))
+    unit = mpf(2)**(exponent - bits + 1)
+    high = mp.nint(value / unit) * unit
+    return float(high), float(value - high)
+
+
+def array(name, comment, coefficients):
+    body = ",\n    ".join(c.hex() for c in coefficients)
+    return (f"/// {comment}\ninline constexpr double {name}[{len(coefficients)}] = {{\n"
+            f"    {body}}};\n")
+
+
+def constant(name, comment, value):
+    return f"/// {comment}\ninline constexpr double {name} = {value.hex()};\n"
+
+
+def log2_text(x):
+    return f"2^{float(mp.log(x, 2)):.1f}"
+
+
+ln2 = mp.log(2)
+parts = []
+
+# 2^r = 1 + r ln2 + r^2 q(r), |r| <= 1/2
+half = mpf(1) / 2
+
+
+def exp2_rest(r):
+    if abs(r) < mpf("1e-12"):
+        return ln2**2 / 2 + r * ln2**3 / 6
+    return (2**r - 1 - r * ln2) / r**2
+
+
+q = fit(exp2_rest, -half, half, 10)
+err = worst(lambda r: (1 + r * ln2 + r**2 * horner(q, r)) / 2**r - 1, -half, half)
+parts.append(array("kExp2Rest", f"2^r = 1 + r ln 2 + r^2 q(r), |r| <= 1/2; relative error {log2_text(err)}", q))
+high, low = split(ln2, 26)
+parts.append(constant("kLn2High", "ln 2, 26 bits", high))
+parts.append(constant("kLn2Low", "ln 2 - kLn2High", low))
+
+# 2 atanh(s) = 2 s + s R(z), z = s^2, s = (m - 1) / (m + 1), sqrt(1/2) <= m < sqrt(2)
+zmax = ((mp.sqrt(2) - 1) / (mp.sqrt(2) + 1))**2 * mpf("1.0001")
+
+
+def atanh_rest(z):
+    if z < mpf("1e-12"):
+        return mpf(2) / 3 + z * 2 / 5
+    s = mp.sqrt(z)
+    return (2 * mp.atanh(s) - 2 * s) / s / z
+
+
+r = fit(atanh_rest, mpf(0), zmax, 8)
+err = worst(lambda z: (2 + z * horner(r, z)) * mp.sqrt(z) / (2 * mp.atanh(mp.sqrt(z))) - 1, mpf("1e-9"), zmax)
+parts.append(array("kLogRest", f"2 atanh(s) = 2 s + s z r(z), z = s^2 <= 0.0295; relative error {log2_text(err)}", r))
+high, low = split(1 / ln2, 26)
+parts.append(constant("kLog2EHigh", "1 / ln 2, 26 bits", high))
+parts.append(constant("kLog2ELow", "1 / ln 2 - kLog2EHigh", low))
+
+# sin(2 pi r) = r (2 pi + z s(z)), cos(2 pi r) = 1 + z c(z), z = r^2, |r| <= 1/8
+zmax = mpf(1) / 64
+
+
+def sin_rest(z):
+    if z < mpf("1e-12"):
+        return -(2 * mp.pi)**3 / 6 + z * (2 * mp.pi)**5 / 120
+    return (mp.sin(2 * mp.pi * mp.sqrt(z)) / mp.sqrt(z) - 2 * mp.pi) / z
+
+
+def cos_rest(z):
+    if z < mpf("1e-12"):
+        return -(2 * mp.pi)**2 / 2 + z * (2 * mp.pi)**4 / 24
+    return (mp.cos(2 * mp.pi * mp.sqrt(z)) - 1) / z
+
+
+s = fit(sin_rest, mpf(0), zmax, 7)
+err = worst(lambda z: mp.sqrt(z) * (2 * mp.pi + z * horner(s, z)) / mp.sin(2 * mp.pi * mp.sqrt(z)) - 1,
+            mpf("1e-9"), zmax)
+parts.append(array("kSinRest", f"sin(2 pi r) = r (2 pi + z s(z)), z = r^2, |r| <= 1/8; relative error {log2_text(err)}", s))
+c = fit(cos_rest, mpf(0), zmax, 7)
+err = worst(lambda z: 1 + z * horner(c, z) - mp.cos(2 * mp.pi * mp.sqrt(z)), mpf(0), zmax)
+parts.append(array("kCosRest", f"cos(2 pi r) = 1 + z c(z); absolute error {log2_text(err)}", c))
+parts.append(constant("kTwoPi", "2 pi", float(2 * mp.pi)))
+
+octave_db = 20 * mp.log10(2)
+high, low = split(octave_db, 38)
+parts.append(constant("kOctaveDb", "decibels of a doubling, 20 log10(2)", float(octave_db)))
+parts.append(constant("kOctaveDbHigh", "the same, 38 bits", high))
+parts.append(constant("kOctaveDbLow", "kOctaveDb - kOctaveDbHigh, exactly", low))
+parts.append(constant("kOctavesPerDb", "log2(10) / 20", float(mp.log(10, 2) / 20)))
+
+text = """// SPDX-License-Identifier: MIT
+// Coefficients of elementary.h. Generated by tools/make_elementary_coefficients.py; do not edit.
+#pragma once
+
+namespace knotwave::base::detail {
+
+""" + "\n".join(parts) + "\n}  // namespace knotwave::base::detail\n"
+
+if "--check" in sys.argv:
+    if TARGET.read_text() != text:
+        sys.exit(f"{TARGET} is not what {sys.argv[0]} makes")
+else:
+    TARGET.write_text(text)

@@ -1,2 +1,217 @@
 // SPDX-License-Identifier: MIT
 #include "knotwave/curves/algorithms.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "homogeneous.h"
+#include "span_basis.h"
+#include "spec_checks.h"
+
+namespace knotwave::curves {
+namespace {
+
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+
+Error outside(const NurbsCurve& curve, double u, const std::string& rule) {
+  return fail(ErrorCode::parameter_out_of_range, "curve '" + curve.name() + "': u = " + text_of(u) +
+                                                     " is " + rule + " " + text_of(curve.u_min()) +
+                                                     ".." + text_of(curve.u_max()));
+}
+
+bool inside(const NurbsCurve& curve, double u) {
+  return u >= curve.u_min() && u <= curve.u_max();  // false for NaN
+}
+
+// What stays when points and knots change.
+CurveSpec empty_spec_of(const NurbsCurve& curve) {
+  CurveSpec spec;
+  spec.name = curve.name();
+  spec.degree = curve.degree();
+  spec.dim = curve.dim();
+  return spec;
+}
+
+// One period again of an expanded periodic curve of n + p points whose p seam points may be stale:
+// `first_true` is the index from which n points are right.
+CurveSpec one_period(const HomogeneousCurve& all, int first_true, CurveSpec spec) {
+  CurveSpec full = spec;
+  all.round_to(full);
+  const int p = all.degree, n = static_cast<int>(all.points.size()) - p, dim = all.dim;
+  spec.periodic = true;
+  spec.points.resize(index_of(n * dim));
+  spec.weights.resize(index_of(n));
+  for (int i = first_true; i < first_true + n; ++i) {
+    for (int c = 0; c < dim; ++c) {
+      spec.points[index_of(i % n * dim + c)] = full.points[index_of(i * dim + c)];
+    }
+    spec.weights[index_of(i % n)] = full.weights[index_of(i)];
+  }
+  spec.knots.assign(full.knots.begin() + p, full.knots.begin() + p + n + 1);
+  return spec;
+}
+
+// One more u in a periodic curve. The knot is inserted in one period of the expanded curve; the n+1
+// points from the first blended one on are right, the p others are their images.
+Result<NurbsCurve> insert_periodic(const NurbsCurve& curve, double u) {
+  HomogeneousCurve all(curve);
+  const int span = find_span(all.knots, all.degree, u, Side::right);
+  all.insert(u);
+  const int first_true = std::min(span - all.degree + 1, all.degree);
+  return NurbsCurve::create(one_period(all, first_true, empty_spec_of(curve)));
+}
+
+}  // namespace
+
+Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times) {
+  if (!inside(curve, u)) return outside(curve, u, "outside");
+  if (curve.is_periodic() && u == curve.u_max()) u = curve.u_min();
+  const bool at_end = !curve.is_periodic() && (u == curve.u_min() || u == curve.u_max());
+  HomogeneousCurve all(curve);
+  int multiplicity = all.multiplicity(u);
+  if (curve.is_periodic() && u == curve.u_min()) {
+    const CurveSpec written = curve.spec();
+    multiplicity =
+        static_cast<int>(std::count(written.knots.begin(), written.knots.end(), u) +
+                         std::count(written.knots.begin(), written.knots.end(), curve.u_max()) - 1);
+  }
+  if (at_end && multiplicity >= curve.degree()) {
+    return outside(curve, u, "a clamped end, knots go inside");
+  }
+  if (times < 0 || multiplicity + times > curve.degree()) {
+    return fail(ErrorCode::knot_multiplicity,
+                "curve '" + curve.name() + "': " + std::to_string(times) + " more knots at u = " +
+                    text_of(u) + " beside " + std::to_string(multiplicity) + ", degree " +
+                    std::to_string(curve.degree()) + " allows " + std::to_string(curve.degree()));
+  }
+  if (times == 0) return curve;
+  if (curve.is_periodic()) {
+    Result<NurbsCurve> result = curve;
+    for (int i = 0; i < times && result; ++i) result = insert_periodic(*result, u);
+    return result;
+  }
+  for (int i = 0; i < times; ++i) all.insert(u);
+  CurveSpec spec = empty_spec_of(curve);
+  spec.jumps.assign(curve.jumps().begin(), curve.jumps().end());
+  all.round_to(spec);
+  return NurbsCurve::create(std::move(spec));
+}
+
+Result<NurbsCurve> sub_curve(const NurbsCurve& curve, double u_a, double u_b) {
+  if (!inside(curve, u_a)) return outside(curve, u_a, "outside");
+  if (!inside(curve, u_b)) return outside(curve, u_b, "outside");
+  if (!(u_a < u_b)) {
+    return fail(ErrorCode::empty_domain, "curve '" + curve.name() + "': from u = " + text_of(u_a) +
+                                             " to " + text_of(u_b) + " there is nothing");
+  }
+  const int p = curve.degree();
+  HomogeneousCurve all(curve);
+  for (const double u : {u_a, u_b}) {
+    for (int have = all.multiplicity(u); have < p; ++have) all.insert(u);
+  }
+  // Spans p..: the first one right of u_a and the last one left of u_b hold the end points.
+  const int first = find_span(all.knots, p, u_a, Side::right);
+  const int last = find_span(all.knots, p, u_b, Side::left);
+  HomogeneousCurve part = all;
+  part.points.assign(all.points.begin() + (first - p), all.points.begin() + last + 1);
+  part.knots.assign(index_of(p + 1), u_a);
+  part.knots.insert(part.knots.end(), all.knots.begin() + first + 1, all.knots.begin() + last + 1);
+  part.knots.insert(part.knots.end(), index_of(p + 1), u_b);
+  CurveSpec spec = empty_spec_of(curve);
+  for (const double jump : curve.jumps()) {
+    if (jump > u_a && jump < u_b) spec.jumps.push_back(jump);
+  }
+  part.round_to(spec);
+  return NurbsCurve::create(std::move(spec));
+}
+
+Result<CurvePair> split(const NurbsCurve& curve, double u) {
+  if (!(u > curve.u_min() && u < curve.u_max())) return outside(curve, u, "not strictly inside");
+  auto left = sub_curve(curve, curve.u_min(), u);
+  if (!left) return left.error();
+  auto right = sub_curve(curve, u, curve.u_max());
+  if (!right) return right.error();
+  return CurvePair{std::move(*left), std::move(*right)};
+}
+
+std::vector<BezierSegment> to_bezier(const NurbsCurve& curve) {
+  const int p = curve.degree(), dim = curve.dim();
+  const HomogeneousCurve all(curve);
+  std::vector<BezierSegment> segments;
+  std::vector<HomogeneousPoint> points(index_of(p + 1));
+  for (int span = p; span < curve.point_count(); ++span) {
+    const double u0 = all.knots[index_of(span)], u1 = all.knots[index_of(span + 1)];
+    if (!(u0 < u1)) continue;
+    bezier_points(all, span, points);
+    BezierSegment segment{u0, u1, p, dim, {}, {}};
+    segment.points.resize(index_of((p + 1) * dim));
+    for (int r = 0; r <= p; ++r) {
+      points[index_of(r)].project(
+          std::span(segment.points).subspan(index_of(r * dim), index_of(dim)));
+      segment.weights.push_back(points[index_of(r)].w.hi);
+    }
+    segments.push_back(std::move(segment));
+  }
+  return segments;
+}
+
+void de_casteljau(const BezierSegment& segment, double u, std::span<double> out) noexcept {
+  const int p = segment.degree;
+  if (!(u > segment.u0)) u = segment.u0;
+  if (u > segment.u1) u = segment.u1;
+  HomogeneousPoint work[kMaxDegree + 1];
+  for (int r = 0; r <= p; ++r) {
+    work[r] = HomogeneousPoint(
+        std::span(segment.points).subspan(index_of(r * segment.dim), index_of(segment.dim)),
+        segment.weights[index_of(r)]);
+  }
+  for (int level = 1; level <= p; ++level) {
+    for (int r = 0; r <= p - level; ++r) {
+      work[r] = blend(work[r], work[r + 1], segment.u0, segment.u1, u);
+    }
+  }
+  work[0].project(out.first(index_of(segment.dim)));
+}
+
+void de_boor(const NurbsCurve& curve, double u, std::span<double> out) noexcept {
+  const int p = curve.degree(), dim = curve.dim();
+  u = KnotDomain{curve.u_min(), curve.u_max(), curve.is_periodic()}.place(u, Side::right);
+  const auto knots = curve.knots();
+  const int span = find_span(knots, p, u, Side::right);
+  HomogeneousPoint work[kMaxDegree + 1];
+  for (int r = 0; r <= p; ++r) {
+    const int i = span - p + r;
+    work[r] = HomogeneousPoint(curve.points().subspan(index_of(i * dim), index_of(dim)),
+                               curve.weights()[index_of(i)]);
+  }
+  for (int level = 1; level <= p; ++level) {
+    for (int r = 0; r <= p - level; ++r) {
+      work[r] = blend(work[r], work[r + 1], knots[index_of(span - p + level + r)],
+                      knots[index_of(span + 1 + r)], u);
+    }
+  }
+  work[0].project(out.first(index_of(dim)));
+}
+
+std::vector<double> greville_abscissae(const NurbsCurve& curve) {
+  const int p = curve.degree();
+  std::vector<double> abscissae;
+  for (int i = 0; i < curve.point_count(); ++i) {
+    DoubleDouble sum = 0.0;
+    for (int k = 1; k <= p; ++k) sum += curve.knots()[index_of(i + k)];
+    abscissae.push_back((sum / static_cast<double>(p)).hi);
+  }
+  return abscissae;
+}
+
+HullRange hull_range(const NurbsCurve& curve, int coordinate) {
+  HullRange range{curve.points()[index_of(coordinate)], curve.points()[index_of(coordinate)]};
+  for (int i = 1; i < curve.point_count(); ++i) {
+    const double x = curve.points()[index_of(i * curve.dim() + coordinate)];
+    range.low = std::min(range.low, x);
+    range.high = std::max(range.high, x);
+  }
+  return range;
+}
+
+}  // namespace knotwave::curves

@@ -1,2 +1,155 @@
 // SPDX-License-Identifier: MIT
 #include "knotwave/curves/nurbs_curve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "span_basis.h"
+#include "spec_checks.h"
+
+namespace knotwave::curves {
+namespace {
+
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+Result<NurbsCurve> NurbsCurve::create(CurveSpec spec) {
+  if (auto found = find_fault(spec)) return std::move(found->error);
+  NurbsCurve curve;
+  curve.name_ = std::move(spec.name);
+  curve.degree_ = spec.degree;
+  curve.dim_ = spec.dim;
+  curve.periodic_ = spec.periodic;
+  const int written = static_cast<int>(spec.points.size()) / spec.dim;
+  curve.knots_ = expanded_knots(spec.knots, spec.degree, written, spec.periodic);
+  curve.points_ = std::move(spec.points);
+  curve.weights_ = std::move(spec.weights);
+  curve.weights_.resize(index_of(written), 1.0);
+  curve.jumps_ = std::move(spec.jumps);
+  if (spec.periodic) {
+    const auto p = index_of(spec.degree), numbers = p * index_of(spec.dim);
+    curve.points_.reserve(curve.points_.size() + numbers);
+    curve.weights_.reserve(curve.weights_.size() + p);
+    for (std::size_t i = 0; i < numbers; ++i) curve.points_.push_back(curve.points_[i]);
+    for (std::size_t i = 0; i < p; ++i) curve.weights_.push_back(curve.weights_[i]);
+  }
+  const double first = curve.weights_.front();
+  curve.rational_ = std::any_of(curve.weights_.begin(), curve.weights_.end(),
+                                [first](double w) { return w != first; });
+  return curve;
+}
+
+CurveSpec NurbsCurve::spec() const {
+  CurveSpec spec;
+  spec.name = name_;
+  spec.degree = degree_;
+  spec.dim = dim_;
+  spec.periodic = periodic_;
+  spec.jumps = jumps_;
+  spec.knots = written_knots(knots_, degree_, periodic_);
+  const auto count = weights_.size() - index_of(periodic_ ? degree_ : 0);
+  spec.points.assign(points_.begin(), points_.begin() + static_cast<long>(count) * dim_);
+  if (std::any_of(weights_.begin(), weights_.end(), [](double w) { return w != 1.0; })) {
+    spec.weights.assign(weights_.begin(), weights_.begin() + static_cast<long>(count));
+  }
+  return spec;
+}
+
+bool NurbsCurve::is_clamped() const noexcept {
+  return knots_.front() == u_min() && knots_.back() == u_max();
+}
+
+void NurbsCurve::evaluate(double u, std::span<double> out) const noexcept {
+  evaluate(u, Side::right, out);
+}
+
+void NurbsCurve::evaluate(double u, Side side, std::span<double> out) const noexcept {
+  u = KnotDomain{u_min(), u_max(), periodic_}.place(u, side);
+  const int span = find_span(knots_, degree_, u, side);
+  const SpanBasis basis(knots_, degree_, span, u);
+  DoubleDouble share[kMaxDegree + 1];
+  DoubleDouble total = 0.0;
+  for (int r = 0; r <= degree_; ++r) {
+    share[r] = basis.rows[degree_][r];
+    if (rational_) share[r] = share[r] * weights_[index_of(span - degree_ + r)];
+    total += share[r];
+  }
+  for (int c = 0; c < dim_; ++c) {
+    DoubleDouble sum = 0.0;
+    for (int r = 0; r <= degree_; ++r) {
+      sum += share[r] * points_[index_of((span - degree_ + r) * dim_ + c)];
+    }
+    out[index_of(c)] = rational_ ? (sum / total).hi : sum.hi;
+  }
+}
+
+void NurbsCurve::derivatives(double u, int order, Side side, std::span<double> out) const noexcept {
+  const int p = degree_;
+  u = KnotDomain{u_min(), u_max(), periodic_}.place(u, side);
+  const int span = find_span(knots_, p, u, side);
+  const SpanBasis basis(knots_, p, span, u);
+  std::fill(out.begin(), out.begin() + (order + 1) * dim_, 0.0);
+  evaluate(u, side, out.first(index_of(dim_)));
+
+  // Weighted points of the span, seen from C(u): an offset of the curve costs no digits.
+  DoubleDouble local[kMaxDegree + 1][kMaxDim + 1];
+  for (int r = 0; r <= p; ++r) {
+    const int i = span - p + r;
+    const double w = rational_ ? weights_[index_of(i)] : 1.0;
+    for (int c = 0; c < dim_; ++c) {
+      local[r][c] = DoubleDouble::difference(points_[index_of(i * dim_ + c)], out[index_of(c)]) * w;
+    }
+    local[r][dim_] = w;
+  }
+  // sums[k]: k-th derivative of numerator (dim) and denominator; 0 above the degree (A3.3).
+  DoubleDouble sums[kMaxDegree + 1][kMaxDim + 1];
+  for (int k = 0; k <= std::min(order, p); ++k) {
+    for (int r = 0; r <= p - k; ++r) {
+      for (int c = 0; c <= dim_; ++c) sums[k][c] += basis.rows[p - k][r] * local[r][c];
+    }
+    for (int r = 0; r < p - k; ++r) {
+      const double left = knots_[index_of(span - p + k + 1 + r)];
+      const double right = knots_[index_of(span + 1 + r)];
+      const DoubleDouble factor =
+          DoubleDouble(static_cast<double>(p - k)) / DoubleDouble::difference(right, left);
+      for (int c = 0; c <= dim_; ++c) local[r][c] = (local[r + 1][c] - local[r][c]) * factor;
+    }
+  }
+  // A4.2: C_k = (A_k - sum binomial(k, i) w_i C_{k-i}) / w_0, i <= p as higher w_i are 0.
+  DoubleDouble past[kMaxDegree + 1][kMaxDim];  // C_j - C_0 at j = 0, at index j mod (p + 1)
+  for (int c = 0; c < dim_; ++c) past[0][c] = sums[0][c] / sums[0][dim_];
+  for (int k = 1; k <= order; ++k) {
+    for (int c = 0; c < dim_; ++c) {
+      DoubleDouble value = k <= p ? sums[k][c] : DoubleDouble(0.0);
+      double binomial = 1.0;
+      for (int i = 1; rational_ && i <= std::min(k, p); ++i) {
+        binomial = binomial * static_cast<double>(k - i + 1) / static_cast<double>(i);
+        value = value - past[(k - i) % (p + 1)][c] * (sums[i][dim_] * binomial);
+      }
+      value = value / sums[0][dim_];
+      past[k % (p + 1)][c] = value;
+      out[index_of(k * dim_ + c)] = value.hi;
+    }
+  }
+}
+
+int find_span(std::span<const double> knots, int degree, double u, Side side) noexcept {
+  const auto first = knots.begin() + degree;
+  const auto last = knots.end() - degree - 1;  // the end of the domain
+  const bool at_start = !(u > *first);
+  const bool at_end = u >= *last;
+  const bool from_left = at_end || (side == Side::left && !at_start);
+  const double bounded = at_start ? *first : at_end ? *last : u;
+  const auto above =
+      from_left ? std::lower_bound(first, last, bounded) : std::upper_bound(first, last, bounded);
+  return static_cast<int>(above - knots.begin()) - 1;
+}
+
+void basis_functions(std::span<const double> knots, int degree, int span, double u,
+                     std::span<double> out) noexcept {
+  const SpanBasis basis(knots, degree, span, u);
+  for (int r = 0; r <= degree; ++r) out[index_of(r)] = basis.rows[degree][r].hi;
+}
+
+}  // namespace knotwave::curves

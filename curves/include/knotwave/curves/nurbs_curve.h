@@ -18,6 +18,7 @@ inline constexpr int kMaxPoints = 4096;
 inline constexpr double kMinWeight = 1e-6;
 inline constexpr double kMaxWeight = 1e6;
 inline constexpr double kMaxCoordinate = 1e6;
+inline constexpr double kMaxKnot = 1e9;  ///< largest magnitude
 
 /// What a curve file says, before anyone has checked it.
 struct CurveSpec {
@@ -42,8 +43,9 @@ class NurbsCurve {
   /// too_many_points, dimension_mismatch, knot_count_mismatch, knots_decrease, knot_multiplicity
   /// (an inner knot more than p times and not in `jumps`, or any more than p + 1 times; a periodic
   /// knot more than p times), empty_domain, weight_count_mismatch, weight_out_of_range,
-  /// weight_not_positive, coordinate_out_of_range, not_finite. The message names the curve, the
-  /// index at fault and both numbers.
+  /// weight_not_positive, coordinate_out_of_range, value_out_of_range (a knot beyond kMaxKnot),
+  /// parameter_out_of_range (a jump that is no inner knot), not_finite. The message names the
+  /// curve, the index at fault and both numbers.
   static Result<NurbsCurve> create(CurveSpec spec);
 
   const std::string& name() const noexcept { return name_; }

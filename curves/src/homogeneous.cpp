@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "homogeneous.h"
+
+#include <algorithm>
+
+namespace knotwave::curves {
+namespace {
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+HomogeneousPoint::HomogeneousPoint(std::span<const double> point, double weight) noexcept
+    : w(weight) {
+  for (std::size_t c = 0; c < point.size(); ++c) x[c] = DoubleDouble::product(point[c], weight);
+}
+
+void HomogeneousPoint::project(std::span<double> out) const noexcept {
+  for (std::size_t c = 0; c < out.size(); ++c) out[c] = (x[c] / w).hi;
+}
+
+HomogeneousPoint blend(const HomogeneousPoint& a, const HomogeneousPoint& b, double left,
+                       double right, double at) noexcept {
+  if (at == left) return a;
+  if (at == right) return b;
+  // Both parts by division of differences: a small one is as exact as a large one.
+  const DoubleDouble width = DoubleDouble::difference(right, left);
+  const DoubleDouble of_a = DoubleDouble::difference(right, at) / width;
+  const DoubleDouble of_b = DoubleDouble::difference(at, left) / width;
+  HomogeneousPoint mix;
+  for (std::size_t c = 0; c < mix.x.size(); ++c) mix.x[c] = of_a * a.x[c] + of_b * b.x[c];
+  mix.w = of_a * a.w + of_b * b.w;
+  return mix;
+}
+
+HomogeneousCurve::HomogeneousCurve(const NurbsCurve& curve)
+    : degree(curve.degree()), dim(curve.dim()), knots(curve.knots().begin(), curve.knots().end()) {
+  const auto size = index_of(dim);
+  for (std::size_t i = 0; i < curve.weights().size(); ++i) {
+    points.emplace_back(curve.points().subspan(i * size, size), curve.weights()[i]);
+  }
+}
+
+int HomogeneousCurve::multiplicity(double u) const {
+  return static_cast<int>(std::count(knots.begin(), knots.end(), u));
+}
+
+void HomogeneousCurve::insert(double u) {
+  const int p = degree;
+  const int span = find_span(knots, p, u, Side::right);
+  std::array<HomogeneousPoint, kMaxDegree> blended;
+  for (int r = 0; r < p; ++r) {
+    const int i = span - p + 1 + r;
+    blended[index_of(r)] = blend(points[index_of(i - 1)], points[index_of(i)], knots[index_of(i)],
+                                 knots[index_of(i + p)], u);
+  }
+  points.insert(points.begin() + span, HomogeneousPoint());
+  std::copy_n(blended.begin(), p, points.begin() + (span - p + 1));
+  knots.insert(std::upper_bound(knots.begin(), knots.end(), u), u);
+}
+
+void HomogeneousCurve::round_to(CurveSpec& spec) const {
+  spec.knots = knots;
+  spec.points.resize(points.size() * index_of(dim));
+  spec.weights.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].project(std::span(spec.points).subspan(i * index_of(dim), index_of(dim)));
+    spec.weights[i] = points[i].w.hi;
+  }
+}
+
+void bezier_points(const HomogeneousCurve& curve, int span,
+                   std::span<HomogeneousPoint> out) noexcept {
+  const int p = curve.degree;
+  const double left = curve.knots[index_of(span)], right = curve.knots[index_of(span + 1)];
+  std::copy_n(curve.points.begin() + (span - p), p + 1, out.begin());
+  // As the blossom f(left^l, ...): after p levels out[j] = f(left^{p-j}, the j knots to the right).
+  // Level l blends neighbours whose knots differ in one place; point j of it lands in out[j].
+  for (int l = 1; l <= p; ++l) {
+    for (int j = 0; j <= p - l; ++j) {
+      out[index_of(j)] =
+          blend(out[index_of(j)], out[index_of(j + 1)], curve.knots[index_of(span - p + l + j)],
+                curve.knots[index_of(span + 1 + j)], left);
+    }
+  }
+  // Then f(left^{p-j}, right^j): the knots right of the span give way to its end.
+  for (int l = 1; l <= p; ++l) {
+    for (int j = p; j >= l; --j) {
+      out[index_of(j)] = blend(out[index_of(j - 1)], out[index_of(j)], left,
+                               curve.knots[index_of(span + 1 + j - l)], right);
+    }
+  }
+}
+
+}  // namespace knotwave::curves

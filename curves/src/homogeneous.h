@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// A curve as algorithms work on it: weighted points (w x, w y, ..., w) in double-double, so that a
+// chain of convex blends is rounded only once, when it becomes a curve again.
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "knotwave/curves/algorithms.h"
+
+#include "double_double.h"
+
+namespace knotwave::curves {
+
+/// (w x0, ..., w x3, w); coordinates a curve does not have stay 0.
+struct HomogeneousPoint {
+  std::array<DoubleDouble, kMaxDim> x;
+  DoubleDouble w = 1.0;
+
+  HomogeneousPoint() = default;
+  HomogeneousPoint(std::span<const double> point, double weight) noexcept;
+  /// The point itself, rounded, to out[dim].
+  void project(std::span<double> out) const noexcept;
+};
+
+/// (at - left) / (right - left) of the way from a to b: inside when left <= at <= right.
+HomogeneousPoint blend(const HomogeneousPoint& a, const HomogeneousPoint& b, double left,
+                       double right, double at) noexcept;
+
+struct HomogeneousCurve {
+  int degree = 0;
+  int dim = 0;
+  std::vector<double> knots;             ///< [n+p+1]
+  std::vector<HomogeneousPoint> points;  ///< [n]
+
+  explicit HomogeneousCurve(const NurbsCurve& curve);  ///< expanded if periodic
+
+  double u_min() const { return knots[static_cast<std::size_t>(degree)]; }
+  double u_max() const { return knots[points.size()]; }
+  int multiplicity(double u) const;
+  /// Boehm, u in the domain. (A5.1 once.)
+  void insert(double u);
+  /// Into the numbers of a spec.
+  void round_to(CurveSpec& spec) const;
+};
+
+/// Points that make span `span` a Bézier segment, to out[degree+1]. O(p^2), only convex blends: the
+/// left end of the span is inserted up to p times, then the right end.
+void bezier_points(const HomogeneousCurve& curve, int span,
+                   std::span<HomogeneousPoint> out) noexcept;
+
+}  // namespace knotwave::curves

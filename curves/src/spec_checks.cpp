@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+#include "spec_checks.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace knotwave::curves {
+namespace {
+
+using Fault = std::optional<SpecFault>;
+using Part = SpecFault::Part;
+
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+
+SpecFault fault(Part part, int index, ErrorCode code, const std::string& what,
+                const std::string& says) {
+  return {fail(code, what + ": " + says), part, index};
+}
+
+std::string count_of(long long n, const char* thing) {
+  return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
+}
+
+Fault find_order_fault(const KnotRules& rules) {
+  for (int i = 0; i < static_cast<int>(rules.knots.size()); ++i) {
+    const double knot = rules.knots[index_of(i)];
+    const std::string name = "knot " + std::to_string(i) + " (" + text_of(knot) + ")";
+    if (!std::isfinite(knot)) {
+      return fault(rules.knots_part, i, ErrorCode::not_finite, rules.what, name + " is not finite");
+    }
+    if (std::abs(knot) > kMaxKnot) {
+      return fault(rules.knots_part, i, ErrorCode::value_out_of_range, rules.what,
+                   name + " is outside -" + text_of(kMaxKnot) + ".." + text_of(kMaxKnot));
+    }
+    if (i > 0 && knot < rules.knots[index_of(i - 1)]) {
+      return fault(rules.knots_part, i, ErrorCode::knots_decrease, rules.what,
+                   name + " is below knot " + std::to_string(i - 1) + " (" +
+                       text_of(rules.knots[index_of(i - 1)]) + ")");
+    }
+  }
+  return std::nullopt;
+}
+
+// A run of equal knots, [first, first + times).
+Fault find_run_fault(const KnotRules& rules, int first, int times, double low, double high) {
+  const double knot = rules.knots[index_of(first)];
+  const bool inside = knot > low && knot < high;
+  const bool jump = std::find(rules.jumps.begin(), rules.jumps.end(), knot) != rules.jumps.end();
+  const int most = inside && !jump ? rules.degree : rules.degree + 1;
+  if (times <= most) return std::nullopt;
+  const bool may_be_jump = inside && !jump && times == rules.degree + 1 && !rules.periodic;
+  return fault(rules.knots_part, first + most, ErrorCode::knot_multiplicity, rules.what,
+               "knot " + std::to_string(first) + " (" + text_of(knot) + ") comes " +
+                   count_of(times, "time") + ", degree " + std::to_string(rules.degree) +
+                   " allows " + std::to_string(most) + (inside && !jump ? " inside" : "") +
+                   (may_be_jump ? "; a jump is declared by jumps = [" + text_of(knot) + "]" : ""));
+}
+
+Fault find_multiplicity_fault(const KnotRules& rules, double low, double high) {
+  const int count = static_cast<int>(rules.knots.size());
+  for (int first = 0; first < count;) {
+    int end = first + 1;
+    while (end < count && rules.knots[index_of(end)] == rules.knots[index_of(first)]) ++end;
+    if (auto found = find_run_fault(rules, first, end - first, low, high)) return found;
+    first = end;
+  }
+  return std::nullopt;
+}
+
+// The first and last knot of a periodic curve are the same place.
+Fault find_seam_fault(const KnotRules& rules) {
+  const auto& knots = rules.knots;
+  const auto at_start = std::count(knots.begin(), knots.end(), knots.front());
+  const auto at_end = std::count(knots.begin(), knots.end(), knots.back());
+  if (at_start + at_end - 1 <= rules.degree) return std::nullopt;
+  return fault(rules.knots_part, 0, ErrorCode::knot_multiplicity, rules.what,
+               "knot 0 (" + text_of(knots.front()) + ") comes " +
+                   count_of(at_start + at_end - 1, "time") +
+                   " around the seam of the period, degree " + std::to_string(rules.degree) +
+                   " allows " + std::to_string(rules.degree));
+}
+
+Fault find_jump_fault(const KnotRules& rules, double low, double high) {
+  for (int i = 0; i < static_cast<int>(rules.jumps.size()); ++i) {
+    const double jump = rules.jumps[index_of(i)];
+    const bool known = std::find(rules.knots.begin(), rules.knots.end(), jump) != rules.knots.end();
+    if (rules.periodic) {
+      return fault(Part::jumps, i, ErrorCode::knot_multiplicity, rules.what,
+                   "jump " + std::to_string(i) + " (" + text_of(jump) +
+                       ") is in a periodic curve, which has none");
+    }
+    if (!known || !(jump > low && jump < high)) {
+      return fault(Part::jumps, i, ErrorCode::parameter_out_of_range, rules.what,
+                   "jump " + std::to_string(i) + " (" + text_of(jump) +
+                       ") is not a knot between the ends of the curve");
+    }
+  }
+  return std::nullopt;
+}
+
+Fault find_coordinate_fault(const std::string& what, int dim, std::span<const double> points) {
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+    const double x = points[index_of(i)];
+    if (std::isfinite(x) && std::abs(x) <= kMaxCoordinate) continue;
+    const std::string where = "point " + std::to_string(i / dim) +
+                              (dim > 1 ? ", coordinate " + std::to_string(i % dim) : "") + " (" +
+                              text_of(x) + ")";
+    return std::isfinite(x)
+               ? fault(Part::points, i, ErrorCode::coordinate_out_of_range, what,
+                       where + " is outside -" + text_of(kMaxCoordinate) + ".." +
+                           text_of(kMaxCoordinate))
+               : fault(Part::points, i, ErrorCode::not_finite, what, where + " is not finite");
+  }
+  return std::nullopt;
+}
+
+Fault find_weight_fault(const std::string& what, std::span<const double> weights) {
+  for (int i = 0; i < static_cast<int>(weights.size()); ++i) {
+    const double w = weights[index_of(i)];
+    if (w >= kMinWeight && w <= kMaxWeight) continue;
+    const std::string name = "weight " + std::to_string(i) + " (" + text_of(w) + ")";
+    if (!std::isfinite(w)) {
+      return fault(Part::weights, i, ErrorCode::not_finite, what, name + " is not finite");
+    }
+    if (w <= 0) {
+      return fault(Part::weights, i, ErrorCode::weight_not_positive, what,
+                   name + " must be above 0, at least " + text_of(kMinWeight));
+    }
+    return fault(Part::weights, i, ErrorCode::weight_out_of_range, what,
+                 name + " is outside " + text_of(kMinWeight) + ".." + text_of(kMaxWeight));
+  }
+  return std::nullopt;
+}
+
+Fault find_dim_fault(const std::string& what, int dim) {
+  if (dim >= 1 && dim <= kMaxDim) return std::nullopt;
+  return fault(
+      Part::points, -1, ErrorCode::dimension_mismatch, what,
+      count_of(dim, "coordinate") + " per point, 1.." + std::to_string(kMaxDim) + " are possible");
+}
+
+}  // namespace
+
+Fault find_knot_fault(const KnotRules& rules) {
+  const int p = rules.degree, n = rules.count;
+  if (p < 1 || p > kMaxDegree) {
+    return fault(rules.degree_part, -1, ErrorCode::degree_out_of_range, rules.what,
+                 "degree " + std::to_string(p) + " is outside 1.." + std::to_string(kMaxDegree));
+  }
+  if (n < p + 1) {
+    return fault(Part::points, -1, ErrorCode::too_few_points, rules.what,
+                 count_of(n, "point") + ", degree " + std::to_string(p) + " needs at least " +
+                     std::to_string(p + 1));
+  }
+  if (n > kMaxPoints) {
+    return fault(
+        Part::points, -1, ErrorCode::too_many_points, rules.what,
+        count_of(n, "point") + ", at most " + std::to_string(kMaxPoints) + " are possible");
+  }
+  if (rules.knots.empty()) return find_jump_fault(rules, 0, 1);
+  const int expected = rules.periodic ? n + 1 : n + p + 1;
+  if (static_cast<int>(rules.knots.size()) != expected) {
+    return fault(rules.knots_part, -1, ErrorCode::knot_count_mismatch, rules.what,
+                 count_of(static_cast<long long>(rules.knots.size()), "knot") + ", expected " +
+                     std::to_string(expected) +
+                     (rules.periodic ? " (points + 1, periodic)" : " (points + degree + 1)"));
+  }
+  if (auto found = find_order_fault(rules)) return found;
+  const int first = rules.periodic ? 0 : p;
+  const int last = rules.periodic ? expected - 1 : n;
+  const double low = rules.knots[index_of(first)], high = rules.knots[index_of(last)];
+  if (!(low < high)) {
+    return fault(rules.knots_part, last, ErrorCode::empty_domain, rules.what,
+                 "the curve has no length: knot " + std::to_string(first) + " and knot " +
+                     std::to_string(last) + " are both " + text_of(low));
+  }
+  if (auto found = find_jump_fault(rules, low, high)) return found;
+  if (rules.periodic) {
+    if (auto found = find_seam_fault(rules)) return found;
+  }
+  return find_multiplicity_fault(rules, low, high);
+}
+
+Fault find_number_fault(const std::string& what, int dim, std::span<const double> points,
+                        std::span<const double> weights) {
+  const auto count = points.size() / index_of(dim);
+  if (!weights.empty() && weights.size() != count) {
+    return fault(Part::weights, -1, ErrorCode::weight_count_mismatch, what,
+                 count_of(static_cast<long long>(weights.size()), "weight") + " for " +
+                     count_of(static_cast<long long>(count), "point"));
+  }
+  if (auto found = find_coordinate_fault(what, dim, points)) return found;
+  return find_weight_fault(what, weights);
+}
+
+Fault find_fault(const CurveSpec& spec) {
+  const std::string what = "curve '" + spec.name + "'";
+  if (auto found = find_dim_fault(what, spec.dim)) return found;
+  if (spec.points.size() % index_of(spec.dim) != 0) {
+    return fault(Part::points, -1, ErrorCode::dimension_mismatch, what,
+                 count_of(static_cast<long long>(spec.points.size()), "number") +
+                     " do not make whole points of " + count_of(spec.dim, "coordinate"));
+  }
+  KnotRules rules;
+  rules.what = what;
+  rules.degree = spec.degree;
+  rules.count =
+      static_cast<int>(std::min<std::size_t>(spec.points.size() / index_of(spec.dim), 1u << 30));
+  rules.periodic = spec.periodic;
+  rules.knots = spec.knots;
+  rules.jumps = spec.jumps;
+  if (auto found = find_knot_fault(rules)) return found;
+  return find_number_fault(what, spec.dim, spec.points, spec.weights);
+}
+
+Fault find_fault(const SurfaceSpec& spec) {
+  const std::string what = "surface '" + spec.name + "'";
+  if (auto found = find_dim_fault(what, spec.dim)) return found;
+  KnotRules u{what + " along u", spec.degree_u, spec.count_u, spec.periodic_u, spec.knots_u, {}};
+  KnotRules v{what + " along v", spec.degree_v, spec.count_v, false, spec.knots_v, {},
+              Part::degree_v,    Part::knots_v};
+  if (auto found = find_knot_fault(u)) return found;
+  if (auto found = find_knot_fault(v)) return found;
+  const long long total = static_cast<long long>(spec.count_u) * spec.count_v;
+  if (total > kMaxPoints) {
+    return fault(
+        Part::points, -1, ErrorCode::too_many_points, what,
+        count_of(total, "point") + ", at most " + std::to_string(kMaxPoints) + " are possible");
+  }
+  const auto expected = static_cast<std::size_t>(total * spec.dim);
+  if (spec.points.size() != expected) {
+    return fault(Part::points, -1, ErrorCode::dimension_mismatch, what,
+                 count_of(static_cast<long long>(spec.points.size()), "number") + ", " +
+                     std::to_string(spec.count_v) + " rows of " + std::to_string(spec.count_u) +
+                     " points with " + count_of(spec.dim, "coordinate") + " are " +
+                     std::to_string(expected));
+  }
+  return find_number_fault(what, spec.dim, spec.points, spec.weights);
+}
+
+std::vector<double> expanded_knots(std::span<const double> knots, int degree, int count,
+                                   bool periodic) {
+  const int p = degree, n = count;
+  if (!periodic) {
+    if (!knots.empty()) return {knots.begin(), knots.end()};
+    std::vector<double> clamped(index_of(n + p + 1), 0.0);
+    for (int i = p + 1; i < n; ++i) {
+      clamped[index_of(i)] = static_cast<double>(i - p) / static_cast<double>(n - p);
+    }
+    std::fill(clamped.begin() + n, clamped.end(), 1.0);
+    return clamped;
+  }
+  std::vector<double> base(knots.begin(), knots.end());
+  for (int i = 0; knots.empty() && i <= n; ++i) {
+    base.push_back(static_cast<double>(i) / static_cast<double>(n));
+  }
+  const double low = base.front(), high = base.back(), period = high - low;
+  std::vector<double> all(index_of(n + 2 * p + 1));
+  for (int i = 0; i <= n; ++i) all[index_of(p + i)] = base[index_of(i)];
+  // A knot on the seam stays exactly on it, whatever the shift rounds to.
+  for (int j = 0; j < p; ++j) {
+    const double before = base[index_of(n - 1 - j)], after = base[index_of(1 + j)];
+    all[index_of(p - 1 - j)] = before == high ? low : std::min(before - period, low);
+    all[index_of(p + n + 1 + j)] = after == low ? high : std::max(after + period, high);
+  }
+  return all;
+}
+
+std::vector<double> written_knots(std::span<const double> expanded, int degree, bool periodic) {
+  const auto skip = index_of(periodic ? degree : 0);
+  const auto kept = expanded.subspan(skip, expanded.size() - 2 * skip);
+  return {kept.begin(), kept.end()};
+}
+
+std::string text_of(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return {text, end};
+}
+
+}  // namespace knotwave::curves

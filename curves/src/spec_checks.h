@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// What is wrong with a curve or surface as written, and with which number.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "knotwave/curves/nurbs_curve.h"
+#include "knotwave/curves/nurbs_surface.h"
+
+namespace knotwave::curves {
+
+/// The first fault of a spec. Curve files use `part` and `index` to find the line and column.
+struct SpecFault {
+  enum class Part { degree, degree_v, points, weights, knots, knots_v, jumps };
+  Error error;
+  Part part = Part::points;
+  int index = -1;  ///< in the flat vector of that part; -1 = the whole of it
+};
+
+std::optional<SpecFault> find_fault(const CurveSpec& spec);
+std::optional<SpecFault> find_fault(const SurfaceSpec& spec);
+
+/// One direction of a curve or surface, for the checks both share.
+struct KnotRules {
+  std::string what;  ///< "curve 'bell'": what messages begin with
+  int degree = 3;
+  int count = 0;  ///< points as written in this direction
+  bool periodic = false;
+  std::span<const double> knots;  ///< empty = left out, nothing to check
+  std::span<const double> jumps;
+  SpecFault::Part degree_part = SpecFault::Part::degree;
+  SpecFault::Part knots_part = SpecFault::Part::knots;
+};
+std::optional<SpecFault> find_knot_fault(const KnotRules& rules);
+
+/// Points and weights: finite, within the limits, as many weights as points (or none).
+std::optional<SpecFault> find_number_fault(const std::string& what, int dim,
+                                           std::span<const double> points,
+                                           std::span<const double> weights);
+
+/// The knots create() keeps: those given, or clamped uniform on [0, 1] (periodic: uniform), and for
+/// a periodic direction with p more on either side, shifted by a period.
+std::vector<double> expanded_knots(std::span<const double> knots, int degree, int count,
+                                   bool periodic);
+
+/// The knots as written again.
+std::vector<double> written_knots(std::span<const double> expanded, int degree, bool periodic);
+
+/// Shortest text of a number that reads back as the same double.
+std::string text_of(double value);
+
+}  // namespace knotwave::curves

@@ -27,7 +27,8 @@ function(knotwave_app name)
 endfunction()
 
 # knotwave_test(MODULE SOURCES ... [LIBS ...])
-# One test program a module, tests/MODULE/*_test.cpp, each test labelled with the module.
+# One test program a module, tests/MODULE/*_test.cpp, each test labelled with the module; suites
+# named *Stress are long and labelled stress instead.
 function(knotwave_test module)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
   add_executable(test_${module} ${arg_SOURCES})
@@ -35,5 +36,8 @@ function(knotwave_test module)
     ${arg_LIBS} knotwave_test_support GTest::gmock GTest::gtest_main knotwave_flags)
   target_compile_definitions(test_${module} PRIVATE
     KNOTWAVE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KNOTWAVE_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
-  gtest_discover_tests(test_${module} PROPERTIES LABELS ${module} TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(test_${module} TEST_FILTER "-*Stress.*"
+    PROPERTIES LABELS ${module} TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(test_${module} TEST_FILTER "*Stress.*" TEST_LIST test_${module}_STRESS
+    PROPERTIES LABELS stress TIMEOUT 3600 DISCOVERY_TIMEOUT 60)
 endfunction()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/allocation_count.h"
 
+#include <cstddef>
 #include <cstdlib>
 #include <new>
 

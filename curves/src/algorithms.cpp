@@ -4,19 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knotwave/base/document.h"
+
 #include "homogeneous.h"
 #include "span_basis.h"
-#include "spec_checks.h"
 
 namespace knotwave::curves {
 namespace {
 
+using base::number_text;
 std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 Error outside(const NurbsCurve& curve, double u, const std::string& rule) {
-  return fail(ErrorCode::parameter_out_of_range, "curve '" + curve.name() + "': u = " + text_of(u) +
-                                                     " is " + rule + " " + text_of(curve.u_min()) +
-                                                     ".." + text_of(curve.u_max()));
+  return fail(ErrorCode::parameter_out_of_range,
+              "curve '" + curve.name() + "': u = " + number_text(u) + " is " + rule + " " +
+                  number_text(curve.u_min()) + ".." + number_text(curve.u_max()));
 }
 
 bool inside(const NurbsCurve& curve, double u) {
@@ -81,7 +83,7 @@ Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times) {
   if (times < 0 || multiplicity + times > curve.degree()) {
     return fail(ErrorCode::knot_multiplicity,
                 "curve '" + curve.name() + "': " + std::to_string(times) + " more knots at u = " +
-                    text_of(u) + " beside " + std::to_string(multiplicity) + ", degree " +
+                    number_text(u) + " beside " + std::to_string(multiplicity) + ", degree " +
                     std::to_string(curve.degree()) + " allows " + std::to_string(curve.degree()));
   }
   if (times == 0) return curve;
@@ -101,8 +103,9 @@ Result<NurbsCurve> sub_curve(const NurbsCurve& curve, double u_a, double u_b) {
   if (!inside(curve, u_a)) return outside(curve, u_a, "outside");
   if (!inside(curve, u_b)) return outside(curve, u_b, "outside");
   if (!(u_a < u_b)) {
-    return fail(ErrorCode::empty_domain, "curve '" + curve.name() + "': from u = " + text_of(u_a) +
-                                             " to " + text_of(u_b) + " there is nothing");
+    return fail(ErrorCode::empty_domain, "curve '" + curve.name() +
+                                             "': from u = " + number_text(u_a) + " to " +
+                                             number_text(u_b) + " there is nothing");
   }
   const int p = curve.degree();
   HomogeneousCurve all(curve);

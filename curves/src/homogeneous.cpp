@@ -39,6 +39,15 @@ HomogeneousCurve::HomogeneousCurve(const NurbsCurve& curve)
   }
 }
 
+HomogeneousCurve HomogeneousCurve::points_between(int first, int last) const {
+  HomogeneousCurve part;
+  part.degree = degree;
+  part.dim = dim;
+  part.knots.assign(knots.begin() + first, knots.begin() + last + degree + 2);
+  part.points.assign(points.begin() + first, points.begin() + last + 1);
+  return part;
+}
+
 int HomogeneousCurve::multiplicity(double u) const {
   return static_cast<int>(std::count(knots.begin(), knots.end(), u));
 }

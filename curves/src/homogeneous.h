@@ -33,10 +33,13 @@ struct HomogeneousCurve {
   std::vector<double> knots;             ///< [n+p+1]
   std::vector<HomogeneousPoint> points;  ///< [n]
 
+  HomogeneousCurve() = default;
   explicit HomogeneousCurve(const NurbsCurve& curve);  ///< expanded if periodic
 
   double u_min() const { return knots[static_cast<std::size_t>(degree)]; }
   double u_max() const { return knots[points.size()]; }
+  /// The part that points [first..last] make alone.
+  HomogeneousCurve points_between(int first, int last) const;
   int multiplicity(double u) const;
   /// Boehm, u in the domain. (A5.1 once.)
   void insert(double u);

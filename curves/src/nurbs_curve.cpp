@@ -92,32 +92,24 @@ void NurbsCurve::derivatives(double u, int order, Side side, std::span<double> o
   std::fill(out.begin(), out.begin() + (order + 1) * dim_, 0.0);
   evaluate(u, side, out.first(index_of(dim_)));
 
-  // Weighted points of the span, seen from C(u): an offset of the curve costs no digits.
-  DoubleDouble local[kMaxDegree + 1][kMaxDim + 1];
-  for (int r = 0; r <= p; ++r) {
-    const int i = span - p + r;
-    const double w = rational_ ? weights_[index_of(i)] : 1.0;
-    for (int c = 0; c < dim_; ++c) {
-      local[r][c] = DoubleDouble::difference(points_[index_of(i * dim_ + c)], out[index_of(c)]) * w;
-    }
-    local[r][dim_] = w;
-  }
-  // sums[k]: k-th derivative of numerator (dim) and denominator; 0 above the degree (A3.3).
+  // Derivatives of numerator and denominator; 0 above the degree. The numerator is seen from C(u),
+  // so an offset of the curve costs no digits.
   DoubleDouble sums[kMaxDegree + 1][kMaxDim + 1];
   for (int k = 0; k <= std::min(order, p); ++k) {
-    for (int r = 0; r <= p - k; ++r) {
-      for (int c = 0; c <= dim_; ++c) sums[k][c] += basis.rows[p - k][r] * local[r][c];
-    }
-    for (int r = 0; r < p - k; ++r) {
-      const double left = knots_[index_of(span - p + k + 1 + r)];
-      const double right = knots_[index_of(span + 1 + r)];
-      const DoubleDouble factor =
-          DoubleDouble(static_cast<double>(p - k)) / DoubleDouble::difference(right, left);
-      for (int c = 0; c <= dim_; ++c) local[r][c] = (local[r + 1][c] - local[r][c]) * factor;
+    DoubleDouble share[kMaxDegree + 1];
+    basis.derivative(k, share);
+    for (int r = 0; r <= p; ++r) {
+      const int i = span - p + r;
+      if (rational_) share[r] = share[r] * weights_[index_of(i)];
+      for (int c = 0; c < dim_; ++c) {
+        const double point = points_[index_of(i * dim_ + c)];
+        sums[k][c] += share[r] * DoubleDouble::difference(point, out[index_of(c)]);
+      }
+      sums[k][dim_] += share[r];
     }
   }
   // A4.2: C_k = (A_k - sum binomial(k, i) w_i C_{k-i}) / w_0, i <= p as higher w_i are 0.
-  DoubleDouble past[kMaxDegree + 1][kMaxDim];  // C_j - C_0 at j = 0, at index j mod (p + 1)
+  DoubleDouble past[kMaxDegree + 1][kMaxDim];  // C_j at index j mod (p + 1); C_0 is about 0
   for (int c = 0; c < dim_; ++c) past[0][c] = sums[0][c] / sums[0][dim_];
   for (int k = 1; k <= order; ++k) {
     for (int c = 0; c < dim_; ++c) {

@@ -28,6 +28,48 @@ std::vector<double> open_rows(const std::vector<double>& flat, int row, int extr
   }
   return open;
 }
+
+// Partial derivatives of the weighted surface, seen from `origin`, and of its weight.
+class Partials {
+ public:
+  Partials(const NurbsSurface& surface, double u, double v, std::span<const double> origin,
+           int order) noexcept
+      : surface_(surface),
+        origin_(origin),
+        span_u_(find_span(surface.knots_u(), surface.degree_u(), u, Side::right)),
+        span_v_(find_span(surface.knots_v(), surface.degree_v(), v, Side::right)) {
+    const SpanBasis along_u(surface.knots_u(), surface.degree_u(), span_u_, u);
+    const SpanBasis along_v(surface.knots_v(), surface.degree_v(), span_v_, v);
+    for (int k = 0; k <= std::min(order, surface.degree_u()); ++k) along_u.derivative(k, u_[k]);
+    for (int l = 0; l <= std::min(order, surface.degree_v()); ++l) along_v.derivative(l, v_[l]);
+  }
+
+  /// d^(k+l) / du^k dv^l of coordinate c, or of the weight when c is dim.
+  DoubleDouble of(int k, int l, int c) const noexcept {
+    const int p = surface_.degree_u(), q = surface_.degree_v(), dim = surface_.dim();
+    DoubleDouble sum = 0.0;
+    if (k > p || l > q) return sum;
+    for (int b = 0; b <= q; ++b) {
+      for (int a = 0; a <= p; ++a) {
+        const int i = (span_v_ - q + b) * surface_.count_u() + span_u_ - p + a;
+        DoubleDouble share = u_[k][a] * v_[l][b] * surface_.weights()[index_of(i)];
+        if (c < dim) {
+          share = share * DoubleDouble::difference(surface_.points()[index_of(i * dim + c)],
+                                                   origin_[index_of(c)]);
+        }
+        sum += share;
+      }
+    }
+    return sum;
+  }
+
+ private:
+  const NurbsSurface& surface_;
+  std::span<const double> origin_;
+  int span_u_, span_v_;
+  DoubleDouble u_[kMaxDegree + 1][kMaxDegree + 1];
+  DoubleDouble v_[kMaxDegree + 1][kMaxDegree + 1];
+};
 }  // namespace
 
 Result<NurbsSurface> NurbsSurface::create(SurfaceSpec spec) {
@@ -98,4 +140,74 @@ void NurbsSurface::evaluate(double u, double v, std::span<double> out) const noe
   }
 }
 
+void NurbsSurface::derivatives(double u, double v, int order,
+                               std::span<double> out) const noexcept {
+  u = KnotDomain{u_min(), u_max(), periodic_u_}.place(u, Side::right);
+  v = KnotDomain{v_min(), v_max(), false}.place(v, Side::right);
+  const auto at = [&](int k, int l, int c) { return index_of((k * (order + 1) + l) * dim_ + c); };
+  std::fill(out.begin(), out.begin() + (order + 1) * (order + 1) * dim_, 0.0);
+  double origin[kMaxDim];
+  evaluate(u, v, origin);
+  const Partials partials(*this, u, v, origin, order);
+  for (int k = 0; k <= order; ++k) {
+    for (int l = 0; k + l <= order; ++l) {
+      // A4.4: what the product rule says the denominator's derivatives add is taken off.
+      DoubleDouble value[kMaxDim];
+      for (int c = 0; c < dim_; ++c) value[c] = partials.of(k, l, c);
+      double binomial_k = 1;
+      for (int i = 0; rational_ && i <= k; ++i) {
+        double binomial_l = 1;
+        for (int j = 0; j <= l; ++j) {
+          if (i + j > 0) {
+            const DoubleDouble factor = partials.of(i, j, dim_) * (binomial_k * binomial_l);
+            for (int c = 0; c < dim_; ++c) value[c] = value[c] - factor * out[at(k - i, l - j, c)];
+          }
+          binomial_l = binomial_l * (l - j) / (j + 1);
+        }
+        binomial_k = binomial_k * (k - i) / (i + 1);
+      }
+      for (int c = 0; c < dim_; ++c) {
+        out[at(k, l, c)] = k + l == 0 ? 0.0 : (value[c] / partials.of(0, 0, dim_)).hi;
+      }
+    }
+  }
+  for (int c = 0; c < dim_; ++c) out[index_of(c)] = origin[c];
+}
+
+NurbsCurve NurbsSurface::iso_curve_at_v(double v0) const {
+  const double v = KnotDomain{v_min(), v_max(), false}.place(v0, Side::right);
+  const int span = find_span(knots_v_, degree_v_, v, Side::right);
+  const SpanBasis basis(knots_v_, degree_v_, span, v);
+  const int count = count_u_ - (periodic_u_ ? degree_u_ : 0);
+  CurveSpec spec{name_, degree_u_, dim_, {}, {}, {}, periodic_u_, {}};
+  spec.knots = written_knots(knots_u_, degree_u_, periodic_u_);
+  for (int i = 0; i < count; ++i) {
+    append_blend(spec, basis, degree_v_, (span - degree_v_) * count_u_ + i, count_u_);
+  }
+  return std::move(*NurbsCurve::create(std::move(spec)));
+}
+
+NurbsCurve NurbsSurface::iso_curve_at_u(double u0) const {
+  const double u = KnotDomain{u_min(), u_max(), periodic_u_}.place(u0, Side::right);
+  const int span = find_span(knots_u_, degree_u_, u, Side::right);
+  const SpanBasis basis(knots_u_, degree_u_, span, u);
+  CurveSpec spec{name_, degree_v_, dim_, {}, {}, knots_v_, false, {}};
+  for (int j = 0; j < count_v_; ++j) {
+    append_blend(spec, basis, degree_u_, j * count_u_ + span - degree_u_, 1);
+  }
+  return std::move(*NurbsCurve::create(std::move(spec)));
+}
+
+void NurbsSurface::append_blend(CurveSpec& spec, const SpanBasis& basis, int degree, int first,
+                                int stride) const {
+  DoubleDouble sums[kMaxDim], total = 0.0;
+  for (int r = 0; r <= degree; ++r) {
+    const int i = first + r * stride;
+    const DoubleDouble share = basis.rows[degree][r] * weights_[index_of(i)];
+    total += share;
+    for (int c = 0; c < dim_; ++c) sums[c] += share * points_[index_of(i * dim_ + c)];
+  }
+  for (int c = 0; c < dim_; ++c) spec.points.push_back((sums[c] / total).hi);
+  spec.weights.push_back(total.hi);
+}
 }  // namespace knotwave::curves

@@ -16,6 +16,14 @@ struct SpanBasis {
   DoubleDouble rows[kMaxDegree + 1][kMaxDegree + 1];
 
   SpanBasis(std::span<const double> knots, int degree, int span, double u) noexcept;
+
+  /// The k-th derivatives of the degree + 1 basis functions, k <= degree, to out[degree+1] (A2.3).
+  void derivative(int k, std::span<DoubleDouble> out) const noexcept;
+
+ private:
+  std::span<const double> knots_;
+  int degree_;
+  int span_;
 };
 
 /// Where a curve is defined, and what a parameter outside of it means.

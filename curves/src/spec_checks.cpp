@@ -2,12 +2,14 @@
 #include "spec_checks.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "knotwave/base/document.h"
 
 namespace knotwave::curves {
 namespace {
 
+using base::number_text;
 using Fault = std::optional<SpecFault>;
 using Part = SpecFault::Part;
 
@@ -25,18 +27,18 @@ std::string count_of(long long n, const char* thing) {
 Fault find_order_fault(const KnotRules& rules) {
   for (int i = 0; i < static_cast<int>(rules.knots.size()); ++i) {
     const double knot = rules.knots[index_of(i)];
-    const std::string name = "knot " + std::to_string(i) + " (" + text_of(knot) + ")";
+    const std::string name = "knot " + std::to_string(i) + " (" + number_text(knot) + ")";
     if (!std::isfinite(knot)) {
       return fault(rules.knots_part, i, ErrorCode::not_finite, rules.what, name + " is not finite");
     }
     if (std::abs(knot) > kMaxKnot) {
       return fault(rules.knots_part, i, ErrorCode::value_out_of_range, rules.what,
-                   name + " is outside -" + text_of(kMaxKnot) + ".." + text_of(kMaxKnot));
+                   name + " is outside -" + number_text(kMaxKnot) + ".." + number_text(kMaxKnot));
     }
     if (i > 0 && knot < rules.knots[index_of(i - 1)]) {
       return fault(rules.knots_part, i, ErrorCode::knots_decrease, rules.what,
                    name + " is below knot " + std::to_string(i - 1) + " (" +
-                       text_of(rules.knots[index_of(i - 1)]) + ")");
+                       number_text(rules.knots[index_of(i - 1)]) + ")");
     }
   }
   return std::nullopt;
@@ -50,11 +52,12 @@ Fault find_run_fault(const KnotRules& rules, int first, int times, double low, d
   const int most = inside && !jump ? rules.degree : rules.degree + 1;
   if (times <= most) return std::nullopt;
   const bool may_be_jump = inside && !jump && times == rules.degree + 1 && !rules.periodic;
-  return fault(rules.knots_part, first + most, ErrorCode::knot_multiplicity, rules.what,
-               "knot " + std::to_string(first) + " (" + text_of(knot) + ") comes " +
-                   count_of(times, "time") + ", degree " + std::to_string(rules.degree) +
-                   " allows " + std::to_string(most) + (inside && !jump ? " inside" : "") +
-                   (may_be_jump ? "; a jump is declared by jumps = [" + text_of(knot) + "]" : ""));
+  return fault(
+      rules.knots_part, first + most, ErrorCode::knot_multiplicity, rules.what,
+      "knot " + std::to_string(first) + " (" + number_text(knot) + ") comes " +
+          count_of(times, "time") + ", degree " + std::to_string(rules.degree) + " allows " +
+          std::to_string(most) + (inside && !jump ? " inside" : "") +
+          (may_be_jump ? "; a jump is declared by jumps = [" + number_text(knot) + "]" : ""));
 }
 
 Fault find_multiplicity_fault(const KnotRules& rules, double low, double high) {
@@ -75,7 +78,7 @@ Fault find_seam_fault(const KnotRules& rules) {
   const auto at_end = std::count(knots.begin(), knots.end(), knots.back());
   if (at_start + at_end - 1 <= rules.degree) return std::nullopt;
   return fault(rules.knots_part, 0, ErrorCode::knot_multiplicity, rules.what,
-               "knot 0 (" + text_of(knots.front()) + ") comes " +
+               "knot 0 (" + number_text(knots.front()) + ") comes " +
                    count_of(at_start + at_end - 1, "time") +
                    " around the seam of the period, degree " + std::to_string(rules.degree) +
                    " allows " + std::to_string(rules.degree));
@@ -87,12 +90,12 @@ Fault find_jump_fault(const KnotRules& rules, double low, double high) {
     const bool known = std::find(rules.knots.begin(), rules.knots.end(), jump) != rules.knots.end();
     if (rules.periodic) {
       return fault(Part::jumps, i, ErrorCode::knot_multiplicity, rules.what,
-                   "jump " + std::to_string(i) + " (" + text_of(jump) +
+                   "jump " + std::to_string(i) + " (" + number_text(jump) +
                        ") is in a periodic curve, which has none");
     }
     if (!known || !(jump > low && jump < high)) {
       return fault(Part::jumps, i, ErrorCode::parameter_out_of_range, rules.what,
-                   "jump " + std::to_string(i) + " (" + text_of(jump) +
+                   "jump " + std::to_string(i) + " (" + number_text(jump) +
                        ") is not a knot between the ends of the curve");
     }
   }
@@ -105,11 +108,11 @@ Fault find_coordinate_fault(const std::string& what, int dim, std::span<const do
     if (std::isfinite(x) && std::abs(x) <= kMaxCoordinate) continue;
     const std::string where = "point " + std::to_string(i / dim) +
                               (dim > 1 ? ", coordinate " + std::to_string(i % dim) : "") + " (" +
-                              text_of(x) + ")";
+                              number_text(x) + ")";
     return std::isfinite(x)
                ? fault(Part::points, i, ErrorCode::coordinate_out_of_range, what,
-                       where + " is outside -" + text_of(kMaxCoordinate) + ".." +
-                           text_of(kMaxCoordinate))
+                       where + " is outside -" + number_text(kMaxCoordinate) + ".." +
+                           number_text(kMaxCoordinate))
                : fault(Part::points, i, ErrorCode::not_finite, what, where + " is not finite");
   }
   return std::nullopt;
@@ -119,16 +122,16 @@ Fault find_weight_fault(const std::string& what, std::span<const double> weights
   for (int i = 0; i < static_cast<int>(weights.size()); ++i) {
     const double w = weights[index_of(i)];
     if (w >= kMinWeight && w <= kMaxWeight) continue;
-    const std::string name = "weight " + std::to_string(i) + " (" + text_of(w) + ")";
+    const std::string name = "weight " + std::to_string(i) + " (" + number_text(w) + ")";
     if (!std::isfinite(w)) {
       return fault(Part::weights, i, ErrorCode::not_finite, what, name + " is not finite");
     }
     if (w <= 0) {
       return fault(Part::weights, i, ErrorCode::weight_not_positive, what,
-                   name + " must be above 0, at least " + text_of(kMinWeight));
+                   name + " must be above 0, at least " + number_text(kMinWeight));
     }
     return fault(Part::weights, i, ErrorCode::weight_out_of_range, what,
-                 name + " is outside " + text_of(kMinWeight) + ".." + text_of(kMaxWeight));
+                 name + " is outside " + number_text(kMinWeight) + ".." + number_text(kMaxWeight));
   }
   return std::nullopt;
 }
@@ -173,7 +176,7 @@ Fault find_knot_fault(const KnotRules& rules) {
   if (!(low < high)) {
     return fault(rules.knots_part, last, ErrorCode::empty_domain, rules.what,
                  "the curve has no length: knot " + std::to_string(first) + " and knot " +
-                     std::to_string(last) + " are both " + text_of(low));
+                     std::to_string(last) + " are both " + number_text(low));
   }
   if (auto found = find_jump_fault(rules, low, high)) return found;
   if (rules.periodic) {
@@ -271,12 +274,6 @@ std::vector<double> written_knots(std::span<const double> expanded, int degree, 
   const auto skip = index_of(periodic ? degree : 0);
   const auto kept = expanded.subspan(skip, expanded.size() - 2 * skip);
   return {kept.begin(), kept.end()};
-}
-
-std::string text_of(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return {text, end};
 }
 
 }  // namespace knotwave::curves

@@ -48,7 +48,4 @@ std::vector<double> expanded_knots(std::span<const double> knots, int degree, in
 /// The knots as written again.
 std::vector<double> written_knots(std::span<const double> expanded, int degree, bool periodic);
 
-/// Shortest text of a number that reads back as the same double.
-std::string text_of(double value);
-
 }  // namespace knotwave::curves

@@ -42,12 +42,16 @@ TEST(Algorithms, EditsKeepTheCurve) {
     const auto part = sub_curve(curve, 0.2, 0.9);
     ASSERT_TRUE(part) << part.error().message;
     const auto segments = to_bezier(curve);
+    const auto raised = spec.degree < kMaxDegree ? elevate_degree(curve) : curve;
+    ASSERT_TRUE(raised) << raised.error().message;
     for (double u = 0.2; u < 0.9; u += 0.01) {
       double a[4], b[4], c[4], d[4], e[4];
       curve.evaluate(u, a);
       inserted->evaluate(u, b);
       part->evaluate(u, c);
       de_boor(curve, u, d);
+      double f[4];
+      raised->evaluate(u, f);
       for (const BezierSegment& s : segments) {
         if (u >= s.u0 && u <= s.u1) de_casteljau(s, u, e);
       }
@@ -55,6 +59,7 @@ TEST(Algorithms, EditsKeepTheCurve) {
         EXPECT_NEAR(a[i], b[i], 4e-16) << round;
         EXPECT_NEAR(a[i], c[i], 4e-16) << round;
         EXPECT_EQ(a[i], d[i]) << round;
+        EXPECT_NEAR(a[i], f[i], 4e-16) << round;
         EXPECT_NEAR(a[i], e[i], 4e-16) << round;
       }
     }

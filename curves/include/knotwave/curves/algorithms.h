@@ -43,7 +43,8 @@ void de_casteljau(const BezierSegment& segment, double u, std::span<double> out)
 /// de Boor in homogeneous coordinates: an evaluation independent of NurbsCurve::evaluate. [any]
 void de_boor(const NurbsCurve& curve, double u, std::span<double> out) noexcept;
 
-/// Degree p + 1, same curve (A5.9). [control] Errors: degree_out_of_range.
+/// Degree p + 1, same curve; an unclamped one becomes clamped, a periodic one stays periodic.
+/// [control] Errors: degree_out_of_range, too_many_points. O(n p^4).
 Result<NurbsCurve> elevate_degree(const NurbsCurve& curve);
 
 /// Greville abscissae [n]: the u where each control point pulls most. [control]
@@ -57,7 +58,8 @@ struct HullRange {
 HullRange hull_range(const NurbsCurve& curve, int coordinate = 0);
 
 /// Whether coordinate `coordinate` never decreases: decided by the Bernstein coefficients of its
-/// derivative, subdividing spans of mixed sign until certain. [control]
+/// derivative, subdividing spans of mixed sign until certain; a fall of less than 2^-44 max|P| is
+/// rounding. [control]
 bool is_non_decreasing(const NurbsCurve& curve, int coordinate = 0);
 
 }  // namespace knotwave::curves

@@ -6,6 +6,8 @@
 
 namespace knotwave::curves {
 
+struct SpanBasis;
+
 /// What a surface file says, before anyone has checked it.
 struct SurfaceSpec {
   std::string name;
@@ -61,6 +63,9 @@ class NurbsSurface {
 
  private:
   NurbsSurface() = default;
+  /// Appends one control point of an iso curve: the blend of degree + 1 of ours.
+  void append_blend(CurveSpec& spec, const SpanBasis& basis, int degree, int first,
+                    int stride) const;
   std::string name_;
   int degree_u_ = 0, degree_v_ = 0, dim_ = 0, count_u_ = 0, count_v_ = 0;
   bool rational_ = false, periodic_u_ = false;

@@ -30,7 +30,8 @@ HomogeneousPoint point_with_knots(const HomogeneousCurve& curve, std::span<const
   }
   const auto shared = std::upper_bound(knots.begin(), knots.end(), knots.front()) - knots.begin();
   const auto after = std::upper_bound(part.knots.begin(), part.knots.end(), knots.front());
-  return part.points[index_of(static_cast<int>(after - part.knots.begin() - shared) - 1)];
+  const auto index = static_cast<std::size_t>(after - part.knots.begin() - shared - 1);
+  return part.points[std::min(index, part.points.size() - 1)];  // p + 1 equal knots at the end
 }
 
 // `knots` with every different one once more.

@@ -114,10 +114,14 @@ Result<Node> convert(const toml::node& from, Place otherwise, int depth) {
   }
 }
 
-/// toml++ starts with "Error while parsing ...: "; our line says error already.
+/// toml++ starts with "Error while parsing ...: " (our line says error already) and may quote the
+/// whole of a long token.
 std::string plain_words(std::string_view description) {
   constexpr std::string_view kPrefix = "Error while parsing ";
+  constexpr std::size_t kLongest = 200;
   if (description.starts_with(kPrefix)) description.remove_prefix(kPrefix.size());
+  if (description.starts_with("Encountered")) return "e" + std::string(description.substr(1));
+  if (description.size() > kLongest) return std::string(description.substr(0, kLongest)) + "...";
   return std::string(description);
 }
 

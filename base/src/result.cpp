@@ -59,9 +59,26 @@ const char* to_string(ErrorCode code) noexcept {
   return "unknown";
 }
 
+namespace {
+/// File names and keys come from strangers: a terminal must not obey what they hold.
+std::string printable(const std::string& text) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7f) {
+      out += c;
+    } else {
+      out += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
+    }
+  }
+  return out;
+}
+}  // namespace
+
 std::string Error::to_string() const {
   std::string text;
-  if (!source.empty()) text += source + ":";
+  if (!source.empty()) text += printable(source) + ":";
   if (line > 0) {
     text += std::to_string(line) + ":";
     if (column > 0) text += std::to_string(column) + ":";
@@ -71,7 +88,7 @@ std::string Error::to_string() const {
     text += "byte " + std::to_string(offset) + ":";
   }
   if (!text.empty()) text += " ";
-  return text + "error: " + message;
+  return text + "error: " + printable(message);
 }
 
 }  // namespace knotwave::base

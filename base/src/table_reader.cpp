@@ -21,7 +21,7 @@ const char* kind_name(Node::Kind kind) {
     case Node::Kind::integer:
       return "a whole number";
     case Node::Kind::real:
-      return "a number";
+      return "a decimal number";
     case Node::Kind::boolean:
       return "true or false";
   }

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "knotwave/base/suggest.h"
+
+#include <array>
+
+#include <gtest/gtest.h>
+
+namespace knotwave::base {
+namespace {
+
+constexpr std::array<std::string_view, 5> kKeys = {"degree", "points", "weights", "knots",
+                                                   "periodic"};
+
+TEST(Suggest, OneEditOfAnyKindFindsTheWord) {
+  EXPECT_EQ(nearest_word("wieghts", kKeys), "weights");   // swap
+  EXPECT_EQ(nearest_word("weight", kKeys), "weights");    // missing
+  EXPECT_EQ(nearest_word("weightss", kKeys), "weights");  // too many
+  EXPECT_EQ(nearest_word("wejghts", kKeys), "weights");   // replaced
+  EXPECT_EQ(nearest_word("knots", kKeys), "knots");
+}
+
+TEST(Suggest, AnEarlierWordWinsATie) {
+  constexpr std::array<std::string_view, 2> kTie = {"pans", "pats"};
+  EXPECT_EQ(nearest_word("pas", kTie), "pans");
+}
+
+TEST(Suggest, WhatIsTooFarIsNotSuggested) {
+  EXPECT_EQ(nearest_word("sustain", kKeys), "");
+  EXPECT_EQ(nearest_word("", kKeys), "");
+  EXPECT_EQ(nearest_word("zz", kKeys), "");
+  EXPECT_EQ(nearest_word(std::string(100000, 'w'), kKeys), "");
+  EXPECT_EQ(nearest_word("knots", {}), "");
+}
+
+TEST(Suggest, TextIsReadyToAppend) {
+  EXPECT_EQ(suggestion("knot", kKeys), "; did you mean 'knots'?");
+  EXPECT_EQ(suggestion("sustain", kKeys), "");
+}
+
+}  // namespace
+}  // namespace knotwave::base

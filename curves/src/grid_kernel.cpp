@@ -1,2 +1,254 @@
 // SPDX-License-Identifier: MIT
+// The kernels of grid_kernel.h, compiled once for each vector unit (Highway) and chosen at start.
+// Only Mul, Add, Sub, Div and selections: never MulAdd, whose rounding differs between targets.
+#include "grid_kernel.h"
+
+#include <atomic>
+
 #include "knotwave/curves/curve_program.h"
+
+// SSSE3 machines take the baseline.
+#define HWY_DISABLED_TARGETS HWY_SSSE3
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "grid_kernel.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file again for each target.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace knotwave::curves {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes = hn::ScalableTag<double>;
+using FloatLanes = hn::Rebind<float, Lanes>;
+using Vector = hn::Vec<Lanes>;
+constexpr Lanes kLanes;
+
+/// Bytes of the largest vector, for the last, partly filled one.
+constexpr std::size_t kMaxLanes = HWY_MAX_BYTES / sizeof(double);
+
+template <int Degree>
+HWY_INLINE Vector horner(const double* HWY_RESTRICT c, Vector t) {
+  Vector sum = hn::Set(kLanes, c[Degree]);
+  for (int k = Degree - 1; k >= 0; --k) sum = hn::Add(hn::Mul(sum, t), hn::Set(kLanes, c[k]));
+  return sum;
+}
+
+HWY_INLINE Vector clamp_to(Vector y, double low, double high) {
+  const Vector least = hn::Set(kLanes, low);
+  const Vector most = hn::Set(kLanes, high);
+  y = hn::IfThenElse(hn::Lt(y, least), least, y);
+  return hn::IfThenElse(hn::Gt(y, most), most, y);
+}
+
+/// u to value, without controls.
+template <int Degree, bool Rational, bool Clamp>
+struct Piece {
+  PieceTask task;
+
+  HWY_INLINE Vector at(Vector u) const {
+    const Vector local =
+        hn::Sub(hn::Sub(u, hn::Set(kLanes, task.shift)), hn::Set(kLanes, task.start));
+    const Vector t = hn::Mul(local, hn::Set(kLanes, task.inverse_width));
+    Vector y = horner<Degree>(task.numerator, t);
+    if constexpr (Rational) y = hn::Div(y, horner<Degree>(task.denominator, t));
+    if constexpr (Clamp) y = clamp_to(y, task.low, task.high);
+    return y;
+  }
+};
+
+HWY_INLINE void store(Vector y, double* HWY_RESTRICT out) { hn::StoreU(y, kLanes, out); }
+HWY_INLINE void store(Vector y, float* HWY_RESTRICT out) {
+  hn::StoreU(hn::DemoteTo(FloatLanes(), y), FloatLanes(), out);
+}
+
+template <class Float>
+HWY_INLINE void store_part(Vector y, Float* HWY_RESTRICT out, std::size_t n) {
+  Float part[kMaxLanes];
+  store(y, part);
+  for (std::size_t i = 0; i < n; ++i) out[i] = part[i];
+}
+
+template <class Evaluator, class Float>
+HWY_INLINE void render_grid(const Evaluator& piece, double origin, double step, double index,
+                            Float* HWY_RESTRICT out, std::size_t n) {
+  const std::size_t lanes = hn::Lanes(kLanes);
+  const Vector first = hn::Set(kLanes, origin);
+  const Vector by = hn::Set(kLanes, step);
+  const Vector stride = hn::Set(kLanes, static_cast<double>(lanes));
+  Vector node = hn::Iota(kLanes, index);  // whole numbers below 2^53: sums are exact
+  std::size_t i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    store(piece.at(hn::Add(first, hn::Mul(node, by))), out + i);
+    node = hn::Add(node, stride);
+  }
+  if (i < n) store_part(piece.at(hn::Add(first, hn::Mul(node, by))), out + i, n - i);
+}
+
+template <class Evaluator>
+HWY_INLINE void render_array(const Evaluator& piece, const double* HWY_RESTRICT u,
+                             double* HWY_RESTRICT out, std::size_t n) {
+  const std::size_t lanes = hn::Lanes(kLanes);
+  std::size_t i = 0;
+  for (; i + lanes <= n; i += lanes) store(piece.at(hn::LoadU(kLanes, u + i)), out + i);
+  if (i == n) return;
+  double part[kMaxLanes] = {};
+  for (std::size_t k = i; k < n; ++k) part[k - i] = u[k];
+  store_part(piece.at(hn::LoadU(kLanes, part)), out + i, n - i);
+}
+
+/// Calls run(Piece<...>) with what the task says fixed at compile time.
+template <int Degree, class Run>
+HWY_INLINE void with_degree(const PieceTask& task, const Run& run) {
+  if (task.denominator == nullptr) {
+    task.clamp ? run(Piece<Degree, false, true>{task}) : run(Piece<Degree, false, false>{task});
+  } else {
+    task.clamp ? run(Piece<Degree, true, true>{task}) : run(Piece<Degree, true, false>{task});
+  }
+}
+
+template <class Run>
+HWY_INLINE void with_piece(const PieceTask& task, const Run& run) {
+  static_assert(kMaxPieceDegree == 7);
+  switch (task.degree) {
+    case 0:
+      return with_degree<0>(task, run);
+    case 1:
+      return with_degree<1>(task, run);
+    case 2:
+      return with_degree<2>(task, run);
+    case 3:
+      return with_degree<3>(task, run);
+    case 4:
+      return with_degree<4>(task, run);
+    case 5:
+      return with_degree<5>(task, run);
+    case 6:
+      return with_degree<6>(task, run);
+    default:
+      return with_degree<7>(task, run);
+  }
+}
+
+void grid_float(const PieceTask& task, double origin, double step, double index, float* out,
+                std::size_t n) {
+  with_piece(task,
+             [&](const auto& piece) HWY_ATTR { render_grid(piece, origin, step, index, out, n); });
+}
+
+void grid_double(const PieceTask& task, double origin, double step, double index, double* out,
+                 std::size_t n) {
+  with_piece(task,
+             [&](const auto& piece) HWY_ATTR { render_grid(piece, origin, step, index, out, n); });
+}
+
+void array(const PieceTask& task, const double* u, double* out, std::size_t n) {
+  with_piece(task, [&](const auto& piece) HWY_ATTR { render_array(piece, u, out, n); });
+}
+
+template <int Degree>
+HWY_INLINE Vector moved(const double* terms, const PieceTask& task, const double* moves,
+                        const ControlTask& controls, Vector t) {
+  Vector sum = horner<Degree>(terms, t);
+  for (int k = 0; k < controls.count; ++k) {
+    const std::size_t index = static_cast<std::size_t>(k);
+    const Vector move = hn::LoadU(kLanes, moves + index * kMaxLanes);
+    const Vector term = horner<Degree>(terms + (index + 1) * task.term_stride, t);
+    sum = hn::Add(sum, hn::Mul(move, term));
+  }
+  return sum;
+}
+
+HWY_INLINE Vector moves_of(Vector value, double rest, double low, double high) {
+  const Vector move = hn::Sub(clamp_to(value, low, high), hn::Set(kLanes, rest));
+  return hn::IfThenElseZero(hn::Eq(value, value), move);
+}
+
+template <int Degree>
+void controls_of_degree(const PieceTask& task, const ControlTask& controls, const double* u,
+                        double* out, std::size_t n) {
+  const std::size_t lanes = hn::Lanes(kLanes);
+  double moves[kMaxControls * kMaxLanes];
+  double part[kMaxLanes] = {};
+  for (std::size_t i = 0; i < n; i += lanes) {
+    const std::size_t count = n - i < lanes ? n - i : lanes;
+    for (int k = 0; k < controls.count; ++k) {
+      const double* values = controls.values[k] + controls.offset + i;
+      for (std::size_t j = 0; j < count; ++j) part[j] = values[j];
+      hn::StoreU(
+          moves_of(hn::LoadU(kLanes, part), controls.rest[k], controls.low[k], controls.high[k]),
+          kLanes, moves + static_cast<std::size_t>(k) * kMaxLanes);
+    }
+    for (std::size_t j = 0; j < count; ++j) part[j] = u[i + j];
+    const Vector local = hn::Sub(hn::Sub(hn::LoadU(kLanes, part), hn::Set(kLanes, task.shift)),
+                                 hn::Set(kLanes, task.start));
+    const Vector t = hn::Mul(local, hn::Set(kLanes, task.inverse_width));
+    Vector y = moved<Degree>(task.numerator, task, moves, controls, t);
+    if (task.denominator != nullptr) {
+      y = hn::Div(y, moved<Degree>(task.denominator, task, moves, controls, t));
+    }
+    if (task.clamp) y = clamp_to(y, task.low, task.high);
+    store_part(y, out + i, count);
+  }
+}
+
+void array_controls(const PieceTask& task, const ControlTask& controls, const double* u,
+                    double* out, std::size_t n) {
+  switch (task.degree) {
+    case 0:
+      return controls_of_degree<0>(task, controls, u, out, n);
+    case 1:
+      return controls_of_degree<1>(task, controls, u, out, n);
+    case 2:
+      return controls_of_degree<2>(task, controls, u, out, n);
+    case 3:
+      return controls_of_degree<3>(task, controls, u, out, n);
+    case 4:
+      return controls_of_degree<4>(task, controls, u, out, n);
+    case 5:
+      return controls_of_degree<5>(task, controls, u, out, n);
+    case 6:
+      return controls_of_degree<6>(task, controls, u, out, n);
+    default:
+      return controls_of_degree<7>(task, controls, u, out, n);
+  }
+}
+
+const GridKernels* kernels() {
+  static constexpr GridKernels kKernels = {grid_float, grid_double, array, array_controls};
+  return &kKernels;
+}
+
+const char* target_name() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace knotwave::curves
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace knotwave::curves {
+namespace {
+HWY_EXPORT(kernels);
+HWY_EXPORT(target_name);
+
+// Null only while other static objects are being made: the baseline serves until then.
+std::atomic<const GridKernels*> kernels_in_use = HWY_DYNAMIC_DISPATCH(kernels)();
+std::atomic<const char*> name_in_use = HWY_DYNAMIC_DISPATCH(target_name)();
+}  // namespace
+
+const GridKernels& grid_kernels() KNOTWAVE_RT {
+  const GridKernels* const kernels = kernels_in_use.load(std::memory_order_relaxed);
+  return kernels != nullptr ? *kernels : *HWY_STATIC_DISPATCH(kernels)();
+}
+
+void set_simd_level(SimdLevel level) {
+  const bool baseline = level == SimdLevel::baseline;
+  kernels_in_use = baseline ? HWY_STATIC_DISPATCH(kernels)() : HWY_DYNAMIC_DISPATCH(kernels)();
+  name_in_use = baseline ? HWY_STATIC_DISPATCH(target_name)() : HWY_DYNAMIC_DISPATCH(target_name)();
+}
+
+const char* simd_level_name() { return name_in_use; }
+
+}  // namespace knotwave::curves
+#endif  // HWY_ONCE

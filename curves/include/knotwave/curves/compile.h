@@ -56,6 +56,7 @@ struct JoinProgram {
   double p0 = 0, p1 = 0;     ///< first two control points of the section
   double slope_factor = 1;   ///< slope at u_join by u = slope_factor * (p1 - p0)
   double low = 0, high = 1;  ///< hull that p1 is limited to
+  bool moves_p1 = true;      ///< false for degree 1: p1 is a corner there, joins are C0
 
   struct Deltas {
     double dp0 = 0;
@@ -66,6 +67,12 @@ struct JoinProgram {
   Deltas join(double value0, double slope0) const KNOTWAVE_RT;
   /// Starts at value0 and leaves the slope to the curve (C0). [audio]
   Deltas join_c0(double value0) const KNOTWAVE_RT;
+  /// The same where controls have moved the program: its value and slope at u_join as they are now
+  /// take the place of p0 and p1. [audio] The bases stay those of the rest curve, so value and
+  /// slope still join exactly and the tail is still untouched.
+  Deltas join_from(double program_value, double program_slope, double value0,
+                   double slope0) const KNOTWAVE_RT;
+  Deltas join_c0_from(double program_value, double value0) const KNOTWAVE_RT;
 };
 
 /// dim 1 or 2 (function form), degree <= 7. u_join is a parameter of the compiled function (for 2-D

@@ -45,6 +45,11 @@ class CurveProgram {
   double low(int coordinate = 0) const KNOTWAVE_RT { return low_[std::size_t(coordinate)]; }
   double high(int coordinate = 0) const KNOTWAVE_RT { return high_[std::size_t(coordinate)]; }
 
+  /// Coefficients of one coordinate on a piece with controls at rest, lowest power of
+  /// t = (u - breaks[piece]) / width first, [piece_degree + 1]. [any] Coordinate dim() of a
+  /// rational program is the denominator, the others are then numerators.
+  std::span<const double> coefficients(int piece, int coordinate = 0) const KNOTWAVE_RT;
+
   /// Value of one coordinate at u. [audio] u is clamped to the domain (wrapped if periodic), NaN
   /// counts as u_min. At an inner break with a jump, the right-hand value. `controls`
   /// [control_count] or empty for rest values; each clamped to its range, NaN = rest.
@@ -72,6 +77,9 @@ class CurveProgram {
 
  private:
   friend class ProgramBuilder;  // src/program_builder.h, what compile() fills it with
+  friend class PieceWalk;       // src/piece_walk.h, u to pieces
+
+  std::size_t rows() const KNOTWAVE_RT { return std::size_t(dim_ + (rational_ ? 1 : 0)); }
 
   // Layout: coefficients_[((piece * (1 + controls) + term) * (dim + rational) + row) * (degree+1)
   // + power]; row dim is the denominator. Term 0 is the rest curve, term k + 1 what control k adds
@@ -81,9 +89,14 @@ class CurveProgram {
   bool rational_ = false;
   bool periodic_ = false;
   double max_error_ = 0;
+  double inverse_period_ = 1;
   std::vector<double> breaks_;
   std::vector<double> inverse_widths_;
   std::vector<double> coefficients_;
+  std::vector<unsigned char> inside_hull_;  // [piece * dim + coordinate]: needs no clamping
+  // Value at u_min and u_max, [term * dim + coordinate]; empty where the pieces say it (the ends
+  // of unclamped and periodic curves).
+  std::vector<double> start_values_, end_values_;
   std::vector<double> low_, high_;
   std::vector<double> control_rest_, control_low_, control_high_;
 };

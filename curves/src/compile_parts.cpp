@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "compile_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "knotwave/base/document.h"
+
+namespace knotwave::curves {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Values at one end by control: 1 where a control is the end point's own coordinate.
+std::vector<double> end_values(const NurbsCurve& curve, int point,
+                               const std::vector<ControlRange>& controls) {
+  const auto dim = static_cast<std::size_t>(curve.dim());
+  std::vector<double> values((1 + controls.size()) * dim, 0.0);
+  for (std::size_t c = 0; c < dim; ++c) values[c] = curve.points()[at(point) * dim + c];
+  for (std::size_t k = 0; k < controls.size(); ++k) {
+    if (controls[k].kind != ControlRange::Kind::coordinate || controls[k].point != point) continue;
+    values[(k + 1) * dim + at(controls[k].coordinate)] = 1.0;
+  }
+  return values;
+}
+
+/// Copies a term's rows into place in each piece.
+void place_term(ProgramParts& parts, const std::vector<SpanPolynomial>& spans, std::size_t term) {
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    double* out =
+        parts.coefficients.data() + i * parts.piece_size() + term * parts.rows() * parts.powers();
+    for (std::size_t r = 0; r < parts.rows() * parts.powers(); ++r) out[r] = spans[i].rows[r].hi;
+  }
+}
+
+/// Corner `corner` of the box of control ranges: bit k set takes control k to its high end.
+std::vector<double> corner_values(const std::vector<ControlRange>& controls, unsigned corner) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < controls.size(); ++k) {
+    values.push_back((corner >> k & 1U) != 0 ? controls[k].high : controls[k].low);
+  }
+  return values;
+}
+
+double error_at_corner(const CurveProgram& program, const NurbsCurve& curve,
+                       const std::vector<double>& controls, int looks) {
+  double worst = 0;
+  double exact[kMaxDim];
+  const auto breaks = program.breaks();
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+    for (int look = 0; look <= looks; ++look) {
+      // Places that are no simple fraction of the span; the last is beside its right end.
+      const double t = (look + 0.381966) / (looks + 0.5);
+      const double u = breaks[i] + std::min(t, 0.999999) * (breaks[i + 1] - breaks[i]);
+      if (!(u < breaks[i + 1])) continue;
+      curve.evaluate(u, exact);
+      for (int c = 0; c < program.dim(); ++c) {
+        const double error = std::abs(program.at_u(u, c, controls) - exact[c]);
+        worst = error <= worst ? worst : error;  // NaN counts as worst and stays
+      }
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+Result<void> check_widths(const NurbsCurve& curve) {
+  const auto knots = curve.knots();
+  for (int i = curve.degree(); i < curve.point_count(); ++i) {
+    const double width = knots[at(i) + 1] - knots[at(i)];
+    if (width == 0 || (width > 1e-280 && width < 1e280)) continue;
+    return fail(ErrorCode::value_out_of_range, "curve '" + curve.name() + "': knots " +
+                                                   base::number_text(knots[at(i)]) + " and " +
+                                                   base::number_text(knots[at(i) + 1]) +
+                                                   " are too close or too far apart to play");
+  }
+  return {};
+}
+
+ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& controls) {
+  ProgramParts parts;
+  parts.dim = curve.dim();
+  parts.periodic = curve.is_periodic();
+  for (int c = 0; c < curve.dim(); ++c) {
+    const HullRange hull = hull_over(curve, c, controls);
+    parts.low.push_back(hull.low);
+    parts.high.push_back(hull.high);
+  }
+  const CurveSpec spec = curve.spec();
+  for (const ControlRange& control : controls) {
+    parts.control_rest.push_back(rest_value(spec, control));
+    parts.control_low.push_back(control.low);
+    parts.control_high.push_back(control.high);
+  }
+  if (!curve.is_periodic()) {
+    if (curve.knots().front() == curve.u_min()) parts.start_values = end_values(curve, 0, controls);
+    if (curve.knots().back() == curve.u_max()) {
+      parts.end_values = end_values(curve, curve.point_count() - 1, controls);
+    }
+  }
+  return parts;
+}
+
+Result<ProgramParts> exact_parts(const NurbsCurve& curve,
+                                 const std::vector<ControlRange>& controls) {
+  ProgramParts parts = frame_of(curve, controls);
+  const auto is_weight = [](const ControlRange& c) { return c.kind == ControlRange::Kind::weight; };
+  parts.degree = curve.degree();
+  parts.rational = curve.is_rational() || std::any_of(controls.begin(), controls.end(), is_weight);
+  const std::vector<SpanPolynomial> spans = span_polynomials(HomogeneousCurve(curve));
+  for (const SpanPolynomial& span : spans) parts.breaks.push_back(span.u0);
+  parts.breaks.push_back(spans.back().u1);
+  parts.coefficients.assign(spans.size() * parts.piece_size(), 0.0);
+  place_term(parts, spans, 0);
+  for (std::size_t k = 0; k < controls.size(); ++k) {
+    place_term(parts, span_polynomials(control_term(curve, controls[k])), k + 1);
+  }
+  return parts;
+}
+
+Result<double> measured_error(const CurveProgram& program, const NurbsCurve& curve,
+                              const std::vector<ControlRange>& controls, int looks) {
+  double worst = error_at_corner(program, curve, {}, looks);
+  for (unsigned corner = 0; !controls.empty() && corner < 1U << controls.size(); ++corner) {
+    const std::vector<double> values = corner_values(controls, corner);
+    const auto moved = curve_with(curve, controls, values);
+    if (!moved) return moved.error();
+    const double error = error_at_corner(program, *moved, values, looks);
+    worst = error <= worst ? worst : error;
+  }
+  return worst;
+}
+
+Error missed_bound(const NurbsCurve& curve, double error, double asked, const std::string& why) {
+  return fail(ErrorCode::error_bound_missed, "curve '" + curve.name() + "': the program is " +
+                                                 base::number_text(error) + " from the curve, " +
+                                                 base::number_text(asked) + " was asked: " + why);
+}
+
+}  // namespace knotwave::curves

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Steps of compile() that its forms share. Private to curves. [control]
+#pragma once
+#include <string>
+
+#include "knotwave/curves/compile.h"
+
+#include "compile_controls.h"
+#include "program_builder.h"
+#include "span_polynomial.h"
+
+namespace knotwave::curves {
+
+/// Every span of the curve as it is: no error but rounding. Degree <= kMaxPieceDegree.
+Result<ProgramParts> exact_parts(const NurbsCurve& curve,
+                                 const std::vector<ControlRange>& controls);
+
+/// Hull, controls, period, and the values at clamped ends: all but the pieces.
+ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& controls);
+
+/// Whether knots leave every span a width whose inverse is a normal number.
+Result<void> check_widths(const NurbsCurve& curve);
+
+/// Largest |program - curve| over all coordinates, at `looks` places a piece, with controls at rest
+/// and at every corner of their ranges.
+Result<double> measured_error(const CurveProgram& program, const NurbsCurve& curve,
+                              const std::vector<ControlRange>& controls, int looks);
+
+/// Largest absolute coordinate of the hull: what errors are compared with.
+Error missed_bound(const NurbsCurve& curve, double error, double asked, const std::string& why);
+
+}  // namespace knotwave::curves

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The spans of a curve as polynomials of a local t in [0, 1], in double-double. Private to curves.
+// [control]
+#pragma once
+#include <span>
+#include <vector>
+
+#include "double_double.h"
+#include "homogeneous.h"
+
+namespace knotwave::curves {
+
+/// Weighted coordinates and weight of one span as powers of t = (u - u0) / (u1 - u0).
+struct SpanPolynomial {
+  double u0 = 0;
+  double u1 = 1;
+  int degree = 0;
+  int dim = 0;
+  std::vector<DoubleDouble> rows;  ///< [(dim + 1) * (degree + 1)], row dim is the weight
+
+  std::span<const DoubleDouble> row(int index) const {
+    const std::size_t powers = static_cast<std::size_t>(degree + 1);
+    return std::span<const DoubleDouble>(rows).subspan(static_cast<std::size_t>(index) * powers,
+                                                       powers);
+  }
+};
+
+/// One for each span of positive length, in order.
+std::vector<SpanPolynomial> span_polynomials(const HomogeneousCurve& curve);
+
+/// c[0] + c[1] t + ... by Horner.
+DoubleDouble polynomial_at(std::span<const DoubleDouble> c, DoubleDouble t) noexcept;
+/// Its derivative by t.
+DoubleDouble polynomial_slope_at(std::span<const DoubleDouble> c, DoubleDouble t) noexcept;
+
+/// Coordinate `coordinate` at t.
+DoubleDouble coordinate_at(const SpanPolynomial& span, int coordinate, DoubleDouble t) noexcept;
+
+}  // namespace knotwave::curves

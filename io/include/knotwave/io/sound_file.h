@@ -16,8 +16,9 @@ struct Sound {
   int rate_hz = 0;
   int channels = 0;
   std::int64_t frames = 0;
-  std::vector<float> samples;  ///< interleaved [frames*channels]
-  int cycle_frames = 0;        ///< frames of one cycle from a `clm ` chunk; 0 without
+  std::vector<float> samples;         ///< interleaved [frames*channels]
+  int cycle_frames = 0;               ///< frames of one cycle from a `clm ` chunk; 0 without
+  std::vector<std::string> warnings;  ///< a file cut short, a `clm ` chunk that makes no sense
 };
 
 struct SoundReadLimits {
@@ -27,9 +28,10 @@ struct SoundReadLimits {
 };
 
 /// WAV (8 to 32 bit, float, double, RF64, W64), AIFF, FLAC, Ogg: what libsndfile opens. Every
-/// sample is checked: NaN and infinity are not_finite with their index. Errors: file_not_found,
+/// sample is checked: NaN and infinity are not_finite with their frame and channel. Memory follows
+/// what the file holds, never what its header says. Errors: file_not_found, io_failed,
 /// unsupported_format, malformed (no frames, impossible header), file_too_large, not_finite,
-/// value_out_of_range, unsupported (built without libsndfile).
+/// value_out_of_range (too many channels, too loud), unsupported (built without libsndfile).
 Result<Sound> read_sound(const std::string& path, const SoundReadLimits& limits = {});
 
 /// A sound as single cycles for an oscillator: one channel, `frame` samples each, `rows` of them.
@@ -37,41 +39,49 @@ struct Cycles {
   int frame = 0;
   int rows = 0;
   std::vector<float> samples;  ///< [rows*frame]
+  std::vector<std::string> warnings;
 };
-/// A `clm ` table is cut by its chunk; an untagged file is one cycle up to 8192 frames, or rows of
-/// 2048 where it divides; else value_out_of_range asks for `frame` (0 = decide as above). More than
-/// one channel: the first.
+inline constexpr int kMinCycleFrames = 4;
+inline constexpr int kMaxCycleFrames = 65536;
+
+/// `frame` samples a cycle (kMinCycleFrames..kMaxCycleFrames), or 0 to decide: a `clm ` table is
+/// cut by its chunk; an untagged file of up to 8192 frames is one cycle; a longer one is rows of
+/// 2048 where that divides it, else value_out_of_range asks for `frame`. More than one channel: the
+/// first. Frames after the last whole cycle are left out with a warning. Errors: as read_sound().
 Result<Cycles> read_cycles(const std::string& path, int frame = 0);
 
 enum class SampleFormat { pcm16, pcm24, float32 };
 
 struct SoundWriteConfig {
-  std::string path;  ///< ".flac" gives FLAC, "-" raw float32 to standard output, else WAV
+  std::string path;  ///< ".wav" or ".flac"; "-" is raw float32 little-endian to standard output
   int rate_hz = 48000;
   int channels = 2;
   SampleFormat format = SampleFormat::pcm24;
-  std::int64_t expected_frames = 0;  ///< chooses RF64 when WAV would pass 4 GiB
+  std::int64_t expected_frames = 0;  ///< at most; chooses RF64 where WAV would pass 4 GiB
   std::uint64_t dither_seed = 1;     ///< TPDF, 1 LSB peak each way, for pcm16 and pcm24
 };
 
 /// Writes to a temporary file and renames it in finish(). Without finish() nothing is left behind
-/// and an old file of that name is kept.
+/// and an old file of that name is kept. The bytes depend on the configuration and the samples
+/// only, not on the time, the machine or how the samples were split over write() calls.
 class SoundWriter {
  public:
-  /// Errors: io_failed, disk_full, unsupported_format (FLAC of float32, rates FLAC cannot hold).
+  /// Errors: io_failed, disk_full, unsupported_format (another ending, FLAC of float32 or of a rate
+  /// or channel count it cannot hold), unsupported (a file, built without libsndfile).
   static Result<SoundWriter> create(const SoundWriteConfig& config);
   SoundWriter(SoundWriter&&) noexcept;
   SoundWriter& operator=(SoundWriter&&) noexcept;
   ~SoundWriter();
 
-  /// Interleaved frames. PCM is clipped, counted. Errors: io_failed, disk_full.
+  /// Interleaved frames. PCM is clipped, counted. Errors: io_failed, disk_full, not_finite,
+  /// file_too_large (a WAV of more than 4 GiB that expected_frames did not announce).
   Result<void> write(std::span<const float> interleaved);
   /// Syncs, closes, renames. Errors as write().
   Result<void> finish();
   /// Samples outside -1..1 (PCM) so far.
   std::int64_t clipped() const noexcept;
   /// SHA-256 of the finished file; empty before, and for a pipe.
-  std::string file_sha256() const;
+  const std::string& file_sha256() const noexcept;
 
  private:
   struct State;

@@ -1,2 +1,76 @@
 // SPDX-License-Identifier: MIT
+// Patches and banks from text and files.
+#include "knotwave/base/file.h"
 #include "knotwave/engine/patch.h"
+
+#include "bank_reader.h"
+#include "patch_reader.h"
+
+namespace knotwave::engine {
+namespace {
+
+Error wrong_kind(const base::Node& root, const std::string& source, curves::FileKind kind,
+                 const std::string& needed) {
+  Error error = kind == curves::FileKind::envelope
+                    ? fail(ErrorCode::unsupported,
+                           "envelope-generator patches (kind = \"envelope\") are not supported yet")
+                    : fail(ErrorCode::unsupported,
+                           "this file's kind is '" + root.find("kind")->text + "'; " + needed);
+  error.source = source;
+  error.line = root.find("kind")->line;
+  error.column = root.find("kind")->column;
+  return error;
+}
+
+}  // namespace
+
+Result<PatchSpec> parse_patch_text(std::string_view text, const std::string& source,
+                                   FileShelf& shelf) {
+  const auto root = base::parse_document(text, source);
+  if (!root) return root.error();
+  const auto kind = curves::read_file_kind(*root, source);
+  if (!kind) return kind.error();
+  if (*kind != curves::FileKind::patch) {
+    return wrong_kind(*root, source, *kind, "a patch (kind = \"patch\") is needed here");
+  }
+  return read_patch(*root, source, shelf);
+}
+
+Result<PatchSpec> parse_patch(std::string_view text, std::string_view source_name) {
+  FileShelf shelf;
+  const std::string source(source_name);
+  const FileShelf::Link link(shelf, source);
+  return parse_patch_text(text, source, shelf);
+}
+
+BankSpec bank_of(PatchSpec patch) {
+  BankSpec bank;
+  bank.name = patch.name;
+  bank.source_name = patch.source_name;
+  bank.drum_channel = 0;
+  bank.entries.emplace_back();
+  bank.entries.back().patch_file = patch.source_name;
+  bank.entry_patch.push_back(0);
+  bank.patches.push_back(std::move(patch));
+  return bank;
+}
+
+Result<BankSpec> read_bank(const std::string& path) {
+  FileShelf shelf;
+  const FileShelf::Link link(shelf, path);
+  const auto text = base::read_file(path, base::kMaxDocumentBytes);
+  if (!text) return text.error();
+  const auto root = base::parse_document(*text, path);
+  if (!root) return root.error();
+  const auto kind = curves::read_file_kind(*root, path);
+  if (!kind) return kind.error();
+  if (*kind == curves::FileKind::bank) return BankReader(*root, path, shelf).read();
+  if (*kind != curves::FileKind::patch) {
+    return wrong_kind(*root, path, *kind, "a patch or a bank is needed here");
+  }
+  auto patch = read_patch(*root, path, shelf);
+  if (!patch) return patch.error();
+  return bank_of(std::move(*patch));
+}
+
+}  // namespace knotwave::engine

@@ -18,6 +18,7 @@ inline constexpr int kMaxOscillators = 4;
 inline constexpr int kMaxEnvelopes = 6;
 inline constexpr int kMaxLfos = 4;
 inline constexpr int kMaxMaps = 32;
+inline constexpr double kNoiseOffDb = -200;
 
 /// A source of sound: a curve, a surface or sampled cycles as a waveform.
 struct OscillatorSpec {
@@ -120,7 +121,7 @@ struct PatchSpec {
   std::string source_name;  ///< file, for messages
   curves::CurveSet curves;  ///< its own, those of its curve files, and the built-in ones it uses
   std::vector<OscillatorSpec> oscillators;
-  double noise_db = -200;  ///< noise source, off at -200
+  double noise_db = kNoiseOffDb;
   double noise_pan = 0.5;
   std::string noise_envelope;  ///< as OscillatorSpec::envelope
   bool crossfade_on = false;

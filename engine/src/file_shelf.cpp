@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The files that patches and banks name.
+#include <algorithm>
+#include <filesystem>
+
+#include "knotwave/base/file.h"
+
+#include "patch_reader.h"
+
+namespace knotwave::engine {
+namespace fs = std::filesystem;
+
+std::string FileShelf::beside(const std::string& from, const std::string& name) {
+  return (fs::path(from).parent_path() / name).lexically_normal().string();
+}
+
+std::string FileShelf::canonical(const std::string& path) {
+  std::error_code failed;
+  const fs::path found = fs::weakly_canonical(path, failed);
+  return failed ? path : found.string();
+}
+
+Result<std::string> FileShelf::read(const std::string& path) const {
+  const auto link = std::find(chain_.begin(), chain_.end(), canonical(path));
+  if (link != chain_.end()) {
+    return fail(ErrorCode::cyclic_reference,
+                "'" + path + "' is being read already: " +
+                    (link == chain_.end() - 1 ? "a file may not name itself"
+                                              : "files may not name each other in a circle"));
+  }
+  auto text = base::read_file(path, base::kMaxDocumentBytes);
+  if (text) return text;
+  return fail(text.error().code, "'" + path + "': " + text.error().message);
+}
+
+Result<const curves::CurveSet*> FileShelf::curves(const std::string& path) {
+  const std::string key = canonical(path);
+  if (const auto known = curve_files_.find(key); known != curve_files_.end()) {
+    return &known->second;
+  }
+  auto text = read(path);
+  if (!text) return text.error();
+  auto set = curves::parse_curves(*text, path);
+  if (!set) return set.error();
+  return &curve_files_.emplace(key, std::move(*set)).first->second;
+}
+
+}  // namespace knotwave::engine

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The words of maps: what `from` and `to` may say. [control]
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "knotwave/engine/patch.h"
+
+namespace knotwave::engine {
+
+/// A source with its index (control number, envelope or LFO).
+struct SourceWord {
+  MapSource source = MapSource::constant;
+  int index = 0;
+};
+
+/// Whether a word means a source by itself, so that no envelope or LFO may be called so.
+bool is_source_word(std::string_view word);
+/// Whether a word begins targets, so that no oscillator may be called so.
+bool is_target_word(std::string_view word);
+
+/// The source `word` of the patch, or none.
+std::optional<SourceWord> find_source(const PatchSpec& patch, std::string_view word);
+/// Every source of the patch, for suggestions (cc0..cc119 as "cc1").
+std::vector<std::string> source_words(const PatchSpec& patch);
+
+/// A target that is no curve.
+struct TargetWord {
+  MapTarget target = MapTarget::amp;
+  int index = -1;  ///< as MapSpec::target_index
+};
+/// The target `word` of the patch, or none; curves are left to the reader of maps.
+std::optional<TargetWord> find_target(const PatchSpec& patch, std::string_view word);
+/// Every such target of the patch, for suggestions.
+std::vector<std::string> target_words(const PatchSpec& patch);
+
+}  // namespace knotwave::engine

@@ -1,2 +1,69 @@
 // SPDX-License-Identifier: MIT
 #include "knotwave/dsp/wave_tables.h"
+
+#include <bit>
+
+#include "table_kernel.h"
+
+namespace knotwave::dsp {
+
+WaveTables::WaveTables()
+    : levels_(1), blends_(1), tables_(table_stride(levels_[0].size_log2)), coefficients_(1, {0, 0}) {}
+
+std::size_t WaveTables::memory_bytes() const noexcept {
+  std::size_t bytes = tables_.size() * sizeof(float) + blends_.size() * sizeof(BlendPiece);
+  for (const auto& row : coefficients_) bytes += row.size() * sizeof(row[0]);
+  return bytes;
+}
+
+// Below bit width b of the increment, 2^(63 - b) harmonics fit and twice as many do not: the level
+// of that power of two is the first guess and the right one is at most three further.
+int WaveTables::level_for(base::Phase increment) const KNOTWAVE_RT {
+  const std::uint64_t backwards = std::uint64_t(0) - increment.value;
+  const std::uint64_t step = increment.value < backwards ? increment.value : backwards;
+  const int last = level_count() - 1;
+  if (step == 0) return last;
+  const int octave = 63 - static_cast<int>(std::bit_width(step));
+  if (octave < 0) return 0;
+  // Levels 1 | 2 3 | 4 5 6 | 8 10 12 | ...
+  int level = octave < 2 ? octave : 3 * octave - 3;
+  if (level >= last) level = last;
+  while (level < last && step <= levels_[static_cast<std::size_t>(level) + 1].limit) ++level;
+  while (level > 0 && step > levels_[static_cast<std::size_t>(level)].limit) --level;
+  return level;
+}
+
+WaveTables::RowBlend WaveTables::blend_at(double position) const KNOTWAVE_RT {
+  if (!(position > 0)) position = 0;
+  if (position > 1) position = 1;
+  std::size_t low = 0, high = blends_.size();  // the last piece that starts at or before position
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (blends_[middle].start <= position ? low : high) = middle;
+  }
+  const BlendPiece& piece = blends_[low];
+  RowBlend blend;
+  blend.first = piece.first;
+  blend.count = piece.count;
+  const double t = (position - piece.start) * piece.inverse_width;
+  for (int r = 0; r < piece.count; ++r) {
+    double weight = piece.power[r][piece.degree];
+    for (int k = piece.degree - 1; k >= 0; --k) weight = weight * t + piece.power[r][k];
+    blend.weight[r] = static_cast<float>(weight);
+  }
+  return blend;
+}
+
+float WaveTables::read(int level, const RowBlend& blend, int channel,
+                       base::Phase phase) const KNOTWAVE_RT {
+  const LevelView view = level_view(level);
+  return read_one({view.data + view.stride * static_cast<std::size_t>(channel),
+                   view.stride * static_cast<std::size_t>(channels_), view.size_log2},
+                  blend, phase);
+}
+
+std::span<const std::complex<double>> WaveTables::coefficients(int row, int channel) const {
+  return coefficients_[static_cast<std::size_t>(row * channels_ + channel)];
+}
+
+}  // namespace knotwave::dsp

@@ -120,7 +120,7 @@ std::vector<Complex> fourier_coefficients(const curves::CurveProgram& cycle, int
   const std::span<const double> breaks = cycle.breaks();
   for (int k = 0; k < cycle.piece_count(); ++k) {
     const auto i = static_cast<std::size_t>(k);
-    const Piece piece = {cycle.piece_coefficients(k, coordinate), (breaks[i] - cycle.u_min()) / period,
+    const Piece piece = {cycle.coefficients(k, coordinate), (breaks[i] - cycle.u_min()) / period,
                          (breaks[i + 1] - breaks[i]) / period};
     const double end = (breaks[i + 1] - cycle.u_min()) / period;
     const auto split = static_cast<std::size_t>(

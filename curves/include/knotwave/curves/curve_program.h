@@ -33,15 +33,6 @@ class CurveProgram {
   double u_max() const KNOTWAVE_RT { return breaks_.back(); }
   /// Where pieces meet, [piece_count + 1], increasing.
   std::span<const double> breaks() const KNOTWAVE_RT { return breaks_; }
-  /// Coefficients [piece_degree + 1] of one coordinate of a piece at rest, ascending powers of the
-  /// local t in [0, 1]; coordinate dim() is the denominator of a rational program. [any]
-  std::span<const double> piece_coefficients(int piece, int coordinate) const KNOTWAVE_RT {
-    const auto rows = static_cast<std::size_t>(dim_ + (rational_ ? 1 : 0));
-    const auto terms = std::size_t(1) + control_rest_.size();
-    const auto count = static_cast<std::size_t>(degree_ + 1);
-    const auto row = std::size_t(piece) * terms * rows + std::size_t(coordinate);
-    return std::span<const double>(coefficients_).subspan(row * count, count);
-  }
   /// Largest |program - curve| found by the check in compile(), in output units. 0 controls moved
   /// and at the corners of their ranges.
   double max_error() const noexcept { return max_error_; }

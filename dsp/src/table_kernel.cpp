@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "table_kernel.h"
 
-#include <hwy/highway.h>
+#include <cstring>
 
 namespace knotwave::dsp {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::FixedTag<float, 4>;
-using V = hn::Vec<D>;
+// The compiler's own 128-bit vectors: gcc and clang lower them to SSE2, NEON or WebAssembly alike.
+// Highway, which serves the wider kernels, has no 128-bit target below SSSE3 in the version we use.
+using V = float __attribute__((vector_size(16)));
+using Int = std::int32_t __attribute__((vector_size(16)));
 constexpr std::size_t kLanes = 4;
+
+inline V load(const float* from) {
+  V v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+inline void store(V v, float* to) { std::memcpy(to, &v, sizeof v); }
 
 /// Where a phase falls: the first of its taps, and the place between the middle two, -1/2..1/2.
 struct Place {
@@ -27,78 +35,64 @@ template <class Value>
 struct Weights {
   Value w[WaveTables::kTaps];
 };
-struct ScalarOps {
-  using Value = float;
-  static float set(float a) { return a; }
-  static float add(float a, float b) { return a + b; }
-  static float sub(float a, float b) { return a - b; }
-  static float mul(float a, float b) { return a * b; }
-};
-struct VectorOps {
-  using Value = V;
-  static V set(float a) { return hn::Set(D(), a); }
-  static V add(V a, V b) { return hn::Add(a, b); }
-  static V sub(V a, V b) { return hn::Sub(a, b); }
-  static V mul(V a, V b) { return hn::Mul(a, b); }
-};
 
-template <class Ops>
-inline Weights<typename Ops::Value> weights_at(typename Ops::Value x) {
-  using Value = typename Ops::Value;
-  const auto quadratic = [](Value s, float c0, float c1, float c2) {
-    return Ops::add(Ops::mul(Ops::add(Ops::mul(s, Ops::set(c2)), Ops::set(c1)), s), Ops::set(c0));
-  };
-  const auto fifth_power = [](Value a) {
-    const Value square = Ops::mul(a, a);
-    return Ops::mul(Ops::mul(square, square), a);
-  };
-  const Value s = Ops::mul(x, x);
+template <class Value>
+inline Value quadratic(Value s, float c0, float c1, float c2) {
+  return (s * c2 + c1) * s + c0;
+}
+template <class Value>
+inline Value fifth_power(Value a) {
+  const Value square = a * a;
+  return square * square * a;
+}
+
+template <class Value>
+inline Weights<Value> weights_at(Value x) {
+  const Value s = x * x;
   const Value even1 = quadratic(s, 7.40625F, 26.25F, -7.5F);
-  const Value odd1 = Ops::mul(x, quadratic(s, -23.4375F, -7.5F, 5.0F));
+  const Value odd1 = x * quadratic(s, -23.4375F, -7.5F, 5.0F);
   const Value even2 = quadratic(s, 52.5625F, -27.5F, 5.0F);
-  const Value odd2 = Ops::mul(x, quadratic(s, -48.125F, 35.0F, -10.0F));
-  return {{fifth_power(Ops::sub(Ops::set(0.5F), x)), Ops::add(even1, odd1), Ops::add(even2, odd2),
-           Ops::sub(even2, odd2), Ops::sub(even1, odd1), fifth_power(Ops::add(Ops::set(0.5F), x))}};
+  const Value odd2 = x * quadratic(s, -48.125F, 35.0F, -10.0F);
+  return {{fifth_power(0.5F - x), even1 + odd1, even2 + odd2, even2 - odd2, even1 - odd1,
+           fifth_power(0.5F + x)}};
 }
 
 /// The sum of taps * weights: pairs from the outside in, a tree that is part of the sound.
-template <class Ops>
-inline typename Ops::Value weighted(const Weights<typename Ops::Value>& w,
-                                    const typename Ops::Value* t) {
-  const auto outer = Ops::add(Ops::mul(w.w[0], t[0]), Ops::mul(w.w[5], t[5]));
-  const auto middle = Ops::add(Ops::mul(w.w[1], t[1]), Ops::mul(w.w[4], t[4]));
-  const auto inner = Ops::add(Ops::mul(w.w[2], t[2]), Ops::mul(w.w[3], t[3]));
-  return Ops::add(Ops::add(outer, middle), inner);
+template <class Value>
+inline Value weighted(const Weights<Value>& w, const Value* t) {
+  const Value outer = w.w[0] * t[0] + w.w[5] * t[5];
+  const Value middle = w.w[1] * t[1] + w.w[4] * t[4];
+  const Value inner = w.w[2] * t[2] + w.w[3] * t[3];
+  return (outer + middle) + inner;
 }
 
 /// Four samples: `taps(lane, index, low, high)` gives taps 0..3 and 4..7 of each.
 template <class Taps>
 inline V read_four(const base::Phase* phases, int size_log2, const Taps& taps) {
-  const D d;
-  alignas(16) std::int32_t fraction[kLanes];
+  std::int32_t fraction[kLanes];
   V low[kLanes], high[kLanes];
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const Place at = place(phases[lane], size_log2);
     fraction[lane] = at.fraction;
     taps(lane, at.index, low[lane], high[lane]);
   }
-  const V x = hn::Mul(hn::ConvertTo(d, hn::Load(hn::RebindToSigned<D>(), fraction)),
-                      hn::Set(d, 0x1p-24F));
-  const auto transpose = [d](const V* v, V* low_pair, V* high_pair) {
-    const V ab = hn::InterleaveLower(d, v[0], v[1]);
-    const V cd = hn::InterleaveLower(d, v[2], v[3]);
-    low_pair[0] = hn::ConcatLowerLower(d, cd, ab);
-    low_pair[1] = hn::ConcatUpperUpper(d, cd, ab);
-    if (high_pair == nullptr) return;
-    const V ab_high = hn::InterleaveUpper(d, v[0], v[1]);
-    const V cd_high = hn::InterleaveUpper(d, v[2], v[3]);
-    high_pair[0] = hn::ConcatLowerLower(d, cd_high, ab_high);
-    high_pair[1] = hn::ConcatUpperUpper(d, cd_high, ab_high);
-  };
-  V t[WaveTables::kTaps];
-  transpose(low, t, t + 2);
-  transpose(high, t + 4, nullptr);
-  return weighted<VectorOps>(weights_at<VectorOps>(x), t);
+  Int fractions;
+  std::memcpy(&fractions, fraction, sizeof fractions);
+  const V x = __builtin_convertvector(fractions, V) * 0x1p-24F;
+  V t[WaveTables::kTaps];  // transposed: tap k of the four samples
+  const V ab = __builtin_shufflevector(low[0], low[1], 0, 4, 1, 5);
+  const V cd = __builtin_shufflevector(low[2], low[3], 0, 4, 1, 5);
+  t[0] = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+  t[1] = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+  const V ab_up = __builtin_shufflevector(low[0], low[1], 2, 6, 3, 7);
+  const V cd_up = __builtin_shufflevector(low[2], low[3], 2, 6, 3, 7);
+  t[2] = __builtin_shufflevector(ab_up, cd_up, 0, 1, 4, 5);
+  t[3] = __builtin_shufflevector(ab_up, cd_up, 2, 3, 6, 7);
+  const V ab_high = __builtin_shufflevector(high[0], high[1], 0, 4, 1, 5);
+  const V cd_high = __builtin_shufflevector(high[2], high[3], 0, 4, 1, 5);
+  t[4] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  t[5] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+  return weighted(weights_at(x), t);
 }
 
 }  // namespace
@@ -117,26 +111,24 @@ float read_one(TableRow row, const WaveTables::RowBlend& blend, base::Phase phas
     taps[k] = sum;
   }
   const float x = static_cast<float>(at.fraction) * 0x1p-24F;
-  return weighted<ScalarOps>(weights_at<ScalarOps>(x), taps);
+  return weighted(weights_at(x), taps);
 }
 
 void read_row(TableRow row, std::span<const base::Phase> phases, float* out) KNOTWAVE_RT {
-  const D d;
   std::size_t i = 0;
   for (; i + kLanes <= phases.size(); i += kLanes) {
     const V y = read_four(phases.data() + i, row.size_log2,
                           [&](std::size_t, std::size_t index, V& low, V& high) {
-                            low = hn::LoadU(d, row.data + index);
-                            high = hn::LoadU(d, row.data + index + kLanes);
+                            low = load(row.data + index);
+                            high = load(row.data + index + kLanes);
                           });
-    hn::StoreU(y, d, out + i);
+    store(y, out + i);
   }
   for (; i < phases.size(); ++i) out[i] = read_one(row, {}, phases[i]);
 }
 
 void read_blended(TableRow row, const WaveTables::RowBlend* blends, int blend_step,
                   std::span<const base::Phase> phases, float* out) KNOTWAVE_RT {
-  const D d;
   const auto step = static_cast<std::size_t>(blend_step);
   std::size_t i = 0;
   for (; i + kLanes <= phases.size(); i += kLanes) {
@@ -145,17 +137,17 @@ void read_blended(TableRow row, const WaveTables::RowBlend* blends, int blend_st
         [&](std::size_t lane, std::size_t index, V& low, V& high) {
           const WaveTables::RowBlend& blend = blends[(i + lane) * step];
           const float* at = row.data + row.row_step * static_cast<std::size_t>(blend.first) + index;
-          V w = hn::Set(d, blend.weight[0]);
-          low = hn::Mul(hn::LoadU(d, at), w);
-          high = hn::Mul(hn::LoadU(d, at + kLanes), w);
+          float w = blend.weight[0];
+          low = load(at) * w;
+          high = load(at + kLanes) * w;
           for (int r = 1; r < blend.count; ++r) {
             at += row.row_step;
-            w = hn::Set(d, blend.weight[r]);
-            low = hn::Add(low, hn::Mul(hn::LoadU(d, at), w));
-            high = hn::Add(high, hn::Mul(hn::LoadU(d, at + kLanes), w));
+            w = blend.weight[r];
+            low = low + load(at) * w;
+            high = high + load(at + kLanes) * w;
           }
         });
-    hn::StoreU(y, d, out + i);
+    store(y, out + i);
   }
   for (; i < phases.size(); ++i) out[i] = read_one(row, blends[i * step], phases[i]);
 }

@@ -3,9 +3,10 @@
 
 #include <bit>
 
-#include "complex_product.h"
 #include "knotwave/base/elementary.h"
 #include "knotwave/base/rt.h"
+
+#include "complex_product.h"
 
 namespace knotwave::dsp {
 namespace {
@@ -115,7 +116,9 @@ CycleSynthesis::CycleSynthesis(std::size_t size)
 void CycleSynthesis::render(std::span<const Complex> harmonics, std::span<double> out) {
   const std::size_t half = half_.size();
   KNOTWAVE_ASSERT(harmonics.size() <= half && out.size() == 2 * half);
-  const auto spectrum = [&](std::size_t n) { return n < harmonics.size() ? harmonics[n] : Complex(); };
+  const auto spectrum = [&](std::size_t n) {
+    return n < harmonics.size() ? harmonics[n] : Complex();
+  };
   // Even samples are the real part of a transform of half the size, odd ones the imaginary part.
   work_[0] = Complex(spectrum(0).real(), spectrum(0).real());
   for (std::size_t k = 1; k < half; ++k) {

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Fourier coefficients of piecewise polynomials. Each piece p(t), t in [0, 1], that lies at
-// start + width * t of the cycle adds width * e^{-2 pi i n start} * integral p(t) e^{-i theta t} dt,
-// theta = 2 pi n width. By parts the integral is a sum over derivatives at the ends,
+// start + width * t of the cycle adds width * e^{-2 pi i n start} * integral p(t) e^{-i theta t}
+// dt, theta = 2 pi n width. By parts the integral is a sum over derivatives at the ends,
 //   sum_j (p^(j)(0) - p^(j)(1) e^{-i theta}) / (i theta)^(j + 1),
 // exact but cancelling for small theta, where 16-point Gauss-Legendre is exact to rounding.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "complex_product.h"
 #include "knotwave/base/elementary.h"
 #include "knotwave/dsp/wave_tables.h"
+
+#include "complex_product.h"
 
 namespace knotwave::dsp {
 namespace {
@@ -22,7 +23,8 @@ constexpr int kMaxDegree = curves::kMaxPieceDegree;
 /// Below this many cycles of the harmonic in a piece: Gauss-Legendre (theta < 3 pi).
 constexpr double kGaussCycles = 1.5;
 
-/// Nodes in (0, 1) above one half, and weights; the others mirror them. tools/make_fourier_tables.py
+/// Nodes in (0, 1) above one half, and weights; the others mirror them.
+/// tools/make_fourier_tables.py
 struct GaussNode {
   double distance;  ///< from 1/2
   double weight;

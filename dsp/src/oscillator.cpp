@@ -5,6 +5,7 @@
 #include <array>
 
 #include "knotwave/base/time.h"
+
 #include "table_kernel.h"
 
 namespace knotwave::dsp {
@@ -101,7 +102,8 @@ void TableOscillator::render_chunk(const WaveTables& tables, const Chunk& chunk)
   const auto channels = static_cast<std::size_t>(tables.channels());
   const auto read = [&](int level, std::size_t channel, float* out) {
     const WaveTables::LevelView view = tables.level_view(level);
-    const TableRow row = {view.data + view.stride * channel, view.stride * channels, view.size_log2};
+    const TableRow row = {view.data + view.stride * channel, view.stride * channels,
+                          view.size_log2};
     tables.rows() == 1 ? read_row(row, chunk.phases, out)
                        : read_blended(row, chunk.blends, chunk.blend_step, chunk.phases, out);
   };

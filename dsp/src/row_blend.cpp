@@ -7,6 +7,7 @@
 #include <string>
 
 #include "knotwave/base/elementary.h"
+
 #include "wave_table_builder.h"
 
 namespace knotwave::dsp {
@@ -33,8 +34,8 @@ Polynomial times_linear(const Polynomial& p, double constant, double slope) {
 
 /// The degree + 1 basis functions of one knot span in t = (v - left) / width: Cox-de Boor on
 /// polynomials (The NURBS Book, 2.5).
-std::array<Polynomial, WaveTables::kMaxBlended> span_basis(std::span<const double> knots, int degree,
-                                                           std::size_t span) {
+std::array<Polynomial, WaveTables::kMaxBlended> span_basis(std::span<const double> knots,
+                                                           int degree, std::size_t span) {
   const double left = knots[span];
   const double width = knots[span + 1] - left;
   std::array<Polynomial, WaveTables::kMaxBlended> basis{};
@@ -45,8 +46,10 @@ std::array<Polynomial, WaveTables::kMaxBlended> span_basis(std::span<const doubl
     for (std::size_t r = 0; r < width_d; ++r) {  // lower function r feeds r and r + 1
       const double from = knots[span + 1 + r - width_d];
       const double to = knots[span + 1 + r];
-      const Polynomial up = times_linear(basis[r], (left - from) / (to - from), width / (to - from));
-      const Polynomial down = times_linear(basis[r], (to - left) / (to - from), -width / (to - from));
+      const Polynomial up =
+          times_linear(basis[r], (left - from) / (to - from), width / (to - from));
+      const Polynomial down =
+          times_linear(basis[r], (to - left) / (to - from), -width / (to - from));
       for (std::size_t k = 0; k < up.size(); ++k) {
         raised[r][k] += down[k];
         raised[r + 1][k] += up[k];
@@ -76,7 +79,8 @@ std::array<Polynomial, WaveTableBuilder::kFitRows> lagrange_basis() {
 /// Sum of the harmonics' amplitudes: a bound of the peak.
 double amplitude_sum(std::span<const std::complex<double>> harmonics) {
   double sum = 0;
-  for (std::size_t n = 1; n < harmonics.size(); ++n) sum += 2 * std::abs(harmonics[n].real()) + 2 * std::abs(harmonics[n].imag());
+  for (std::size_t n = 1; n < harmonics.size(); ++n)
+    sum += 2 * std::abs(harmonics[n].real()) + 2 * std::abs(harmonics[n].imag());
   return sum;
 }
 
@@ -99,7 +103,8 @@ void WaveTableBuilder::blend_by_basis(std::span<const double> knots, int degree)
     piece.first = static_cast<int>(span - p);
     piece.count = degree + 1;
     piece.degree = degree;
-    for (std::size_t r = 0; r <= p; ++r) std::copy(basis[r].begin(), basis[r].end(), piece.power[r]);
+    for (std::size_t r = 0; r <= p; ++r)
+      std::copy(basis[r].begin(), basis[r].end(), piece.power[r]);
     tables_.blends_.push_back(piece);
   }
 }
@@ -161,8 +166,7 @@ class RowFit {
   Result<double> error(double start, double end) {
     double worst = 0;
     for (int k = 0; k + 1 < WaveTableBuilder::kFitRows; ++k) {
-      const double t =
-          0.5 * (WaveTableBuilder::fit_node(k) + WaveTableBuilder::fit_node(k + 1));
+      const double t = 0.5 * (WaveTableBuilder::fit_node(k) + WaveTableBuilder::fit_node(k + 1));
       const auto weights = WaveTableBuilder::fit_weights(t);
       auto true_row = row(start + (end - start) * t);
       if (!true_row) return true_row.error();

@@ -45,9 +45,10 @@ double image_gain(double n, double size) {
 /// log2 of the smallest table whose images stay below the floor.
 int table_size_log2(std::span<const double> strongest, int harmonics) {
   const double allowed = kImageFloor * *std::max_element(strongest.begin() + 1, strongest.end());
-  const auto smallest =
-      std::max<unsigned>(WaveTables::kMinTableSize, std::bit_ceil(4u * static_cast<unsigned>(harmonics)));
-  const auto largest = std::max<unsigned>(smallest, std::bit_ceil(32u * static_cast<unsigned>(harmonics)));
+  const auto smallest = std::max<unsigned>(WaveTables::kMinTableSize,
+                                           std::bit_ceil(4u * static_cast<unsigned>(harmonics)));
+  const auto largest =
+      std::max<unsigned>(smallest, std::bit_ceil(32u * static_cast<unsigned>(harmonics)));
   for (unsigned size = smallest;; size *= 2) {
     bool clean = true;
     for (int n = 1; n <= harmonics && clean; ++n) {
@@ -70,9 +71,9 @@ double prefilter(int n, int size) {
 
 Result<WaveTableBuilder> WaveTableBuilder::create(int channels, const WaveTableOptions& options) {
   if (options.max_harmonic < 1 || options.max_harmonic > kMaxHarmonic) {
-    return fail(ErrorCode::value_out_of_range,
-                "max_harmonic " + std::to_string(options.max_harmonic) + " is not in 1.." +
-                    std::to_string(kMaxHarmonic));
+    return fail(ErrorCode::value_out_of_range, "max_harmonic " +
+                                                   std::to_string(options.max_harmonic) +
+                                                   " is not in 1.." + std::to_string(kMaxHarmonic));
   }
   if (!(options.floor_db <= 0) || !(options.max_fit_error > 0)) {
     return fail(ErrorCode::value_out_of_range,

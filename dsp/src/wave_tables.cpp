@@ -8,7 +8,10 @@
 namespace knotwave::dsp {
 
 WaveTables::WaveTables()
-    : levels_(1), blends_(1), tables_(table_stride(levels_[0].size_log2)), coefficients_(1, {0, 0}) {}
+    : levels_(1),
+      blends_(1),
+      tables_(table_stride(levels_[0].size_log2)),
+      coefficients_(1, {0, 0}) {}
 
 std::size_t WaveTables::memory_bytes() const noexcept {
   std::size_t bytes = tables_.size() * sizeof(float) + blends_.size() * sizeof(BlendPiece);

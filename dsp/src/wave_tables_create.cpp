@@ -6,6 +6,7 @@
 
 #include "knotwave/dsp/fft.h"
 #include "knotwave/dsp/wave_tables.h"
+
 #include "wave_table_builder.h"
 
 namespace knotwave::dsp {
@@ -129,8 +130,10 @@ Result<WaveTables> WaveTables::create(const NurbsCurve& curve, const WaveTableOp
   return builder->finish();
 }
 
-Result<WaveTables> WaveTables::create(const NurbsSurface& surface, const WaveTableOptions& options) {
-  if (auto checked = check_channels(surface.name(), surface.dim()); !checked) return checked.error();
+Result<WaveTables> WaveTables::create(const NurbsSurface& surface,
+                                      const WaveTableOptions& options) {
+  if (auto checked = check_channels(surface.name(), surface.dim()); !checked)
+    return checked.error();
   auto builder = WaveTableBuilder::create(surface.dim(), options);
   if (!builder) return builder.error();
   if (surface.is_rational() || surface.degree_v() >= kMaxBlended) {
@@ -187,9 +190,9 @@ Result<WaveTables> WaveTables::create_from_cycles(std::span<const float> samples
   }
   const auto length = static_cast<std::size_t>(frame);
   if (samples.size() != length * static_cast<std::size_t>(rows)) {
-    return fail(ErrorCode::dimension_mismatch,
-                std::to_string(rows) + " cycles of " + std::to_string(frame) + " are not " +
-                    std::to_string(samples.size()) + " samples");
+    return fail(ErrorCode::dimension_mismatch, std::to_string(rows) + " cycles of " +
+                                                   std::to_string(frame) + " are not " +
+                                                   std::to_string(samples.size()) + " samples");
   }
   const auto broken = std::find_if(samples.begin(), samples.end(),
                                    [](float sample) { return !std::isfinite(sample); });

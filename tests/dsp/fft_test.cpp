@@ -30,7 +30,8 @@ std::vector<Complex> slow_transform(const std::vector<Complex>& values, bool inv
   for (std::size_t k = 0; k < size; ++k) {
     std::complex<long double> sum = 0;
     for (std::size_t j = 0; j < size; ++j) {
-      const long double turns = static_cast<long double>(j * k % size) / static_cast<long double>(size);
+      const long double turns =
+          static_cast<long double>(j * k % size) / static_cast<long double>(size);
       const long double angle = 2 * std::acos(-1.0L) * turns * (inverse ? 1 : -1);
       sum += std::complex<long double>(values[j]) *
              std::complex<long double>(std::cos(angle), std::sin(angle));

@@ -31,7 +31,7 @@ inline curves::CurveSpec smooth_spec() {
   spec.name = "C2 16 points";
   spec.degree = 3;
   spec.periodic = true;
-  spec.points = {0.1,  0.9, -0.7, 0.4, -1.0, 0.8, 0.3, -0.6,
+  spec.points = {0.1,  0.9, -0.7, 0.4, -1.0, 0.8,  0.3, -0.6,
                  -0.2, 1.0, -0.9, 0.6, 0.2,  -1.0, 0.7, -0.4};
   return spec;
 }

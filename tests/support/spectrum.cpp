@@ -35,9 +35,7 @@ std::vector<Complex> line_spectrum(std::span<const double> samples) {
   return lines_of({samples.begin(), samples.end()});
 }
 
-double decibels(double amplitude) {
-  return amplitude > 1e-20 ? 20 * std::log10(amplitude) : -400;
-}
+double decibels(double amplitude) { return amplitude > 1e-20 ? 20 * std::log10(amplitude) : -400; }
 
 CoherentReport measure_coherent(std::span<const float> samples, int bin, double rate_hz,
                                 std::span<const Complex> exact) {

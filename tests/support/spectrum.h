@@ -21,12 +21,12 @@ std::vector<std::complex<double>> line_spectrum(std::span<const double> samples)
 double decibels(double amplitude);
 
 struct CoherentReport {
-  double worst_db = -400;       ///< strongest line that is no harmonic of bin k, dBFS
-  double worst_hz = 0;          ///< where it is
-  double worst_18k_db = -400;   ///< the same below 18 kHz
-  double worst_16k_db = -400;   ///< the same below 16 kHz
-  double passband_db = 0;       ///< largest |level error| of a harmonic at or below 18 kHz
-  int passband_harmonics = 0;   ///< how many were compared
+  double worst_db = -400;      ///< strongest line that is no harmonic of bin k, dBFS
+  double worst_hz = 0;         ///< where it is
+  double worst_18k_db = -400;  ///< the same below 18 kHz
+  double worst_16k_db = -400;  ///< the same below 16 kHz
+  double passband_db = 0;      ///< largest |level error| of a harmonic at or below 18 kHz
+  int passband_harmonics = 0;  ///< how many were compared
 };
 
 /// `exact` are c[n] of y(t) = sum_n c[n] e^{2 pi i n t} + conj; harmonics below -90 dBFS are too

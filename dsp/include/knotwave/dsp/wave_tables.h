@@ -19,9 +19,9 @@ namespace knotwave::dsp {
 inline constexpr int kMaxHarmonic = 16384;
 
 struct WaveTableOptions {
-  int max_harmonic = 2048;      ///< 1..kMaxHarmonic; 2048 reach 24 kHz from 11.7 Hz
-  double floor_db = -150;       ///< harmonics whose sum is below this, re the strongest, are left out
-  bool remove_dc = true;        ///< a waveform's mean is not sound
+  int max_harmonic = 2048;  ///< 1..kMaxHarmonic; 2048 reach 24 kHz from 11.7 Hz
+  double floor_db = -150;   ///< harmonics whose sum is below this, re the strongest, are left out
+  bool remove_dc = true;    ///< a waveform's mean is not sound
   double max_fit_error = 1e-6;  ///< rational rows: largest error asked for, re the peak
 };
 
@@ -37,8 +37,8 @@ std::vector<std::complex<double>> fourier_coefficients(const curves::CurveProgra
 /// Level 0 holds the fundamental alone, the last level every harmonic worth keeping.
 class WaveTables {
  public:
-  static constexpr int kTaps = 6;         ///< quintic
-  static constexpr int kMaxBlended = 8;   ///< rows that sound together: degree along v + 1
+  static constexpr int kTaps = 6;        ///< quintic
+  static constexpr int kMaxBlended = 8;  ///< rows that sound together: degree along v + 1
   static constexpr int kMinTableSize = 64;
   static constexpr int kMaxRows = 4096;
 
@@ -77,7 +77,7 @@ class WaveTables {
   /// Spline coefficients in a cycle of the level, a power of two >= kMinTableSize.
   int level_size(int level) const KNOTWAVE_RT { return 1 << levels_[std::size_t(level)].size_log2; }
   /// Largest error found of what was fitted, re the peak: rows blended between the places that were
-  /// compiled, and polynomials for rational spans. 0 where nothing was fitted.
+  /// compiled, and polynomials for rational spans. Rounding where nothing was fitted.
   double fit_error() const noexcept { return fit_error_; }
   std::size_t memory_bytes() const noexcept;
 
@@ -94,7 +94,9 @@ class WaveTables {
   RowBlend blend_at(double position) const KNOTWAVE_RT;
 
   /// Largest |increment| at which the level's harmonics stay below half the sample rate. [audio]
-  std::uint64_t level_limit(int level) const KNOTWAVE_RT { return levels_[std::size_t(level)].limit; }
+  std::uint64_t level_limit(int level) const KNOTWAVE_RT {
+    return levels_[std::size_t(level)].limit;
+  }
 
   /// One sample. [audio] The reference of the oscillator's kernel, equal to it bit for bit.
   float read(int level, const RowBlend& blend, int channel, base::Phase phase) const KNOTWAVE_RT;
@@ -119,8 +121,9 @@ class WaveTables {
   struct Level {
     int harmonics = 1;
     int size_log2 = 6;
-    std::uint64_t limit = ~std::uint64_t(0) >> 1;  ///< largest increment that keeps it below Nyquist
-    std::size_t offset = 0;                        ///< of row 0, channel 0 in tables_
+    std::uint64_t limit =
+        ~std::uint64_t(0) >> 1;  ///< largest increment that keeps it below Nyquist
+    std::size_t offset = 0;      ///< of row 0, channel 0 in tables_
   };
   /// Weights over a stretch of positions: polynomials in (position - start) * inverse_width.
   struct BlendPiece {

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// The General MIDI bank with real songs: finite, unclipped without any limiter, sensibly loud by
+// ITU-R BS.1770 (libebur128), ending in silence.
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <ebur128.h>
+#include <gtest/gtest.h>
+
+#include "knotwave/io/midi_file.h"
+
+#include "support/corpus.h"
+#include "support/program.h"
+
+namespace {
+
+using knotwave::support::run_program;
+
+constexpr const char* kBank = KNOTWAVE_SOURCE_DIR "/examples/banks/general-midi.toml";
+constexpr unsigned kRateHz = 48000;
+
+struct Measure {
+  int exit_code = -1;
+  std::string err;
+  std::size_t frames = 0;
+  bool finite = true;
+  double peak = 0;
+  double end_peak = 0;  ///< of the last 10 ms
+  double loudness_lufs = -HUGE_VAL;
+  double cpu_s = 0;
+};
+
+/// Renders to a pipe and measures on the way; nothing is kept.
+class Meter {
+ public:
+  Meter() : state_(ebur128_init(2, kRateHz, EBUR128_MODE_I)) {}
+  ~Meter() { ebur128_destroy(&state_); }
+  Meter(const Meter&) = delete;
+  Meter& operator=(const Meter&) = delete;
+
+  void add(std::span<const char> bytes, Measure& m) {
+    pending_.insert(pending_.end(), bytes.begin(), bytes.end());
+    const std::size_t frames = pending_.size() / 8;
+    samples_.resize(2 * frames);
+    std::memcpy(samples_.data(), pending_.data(), frames * 8);
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(frames * 8));
+    ebur128_add_frames_float(state_, samples_.data(), frames);
+    for (const float x : samples_) {
+      m.finite = m.finite && std::isfinite(x);
+      m.peak = std::max(m.peak, static_cast<double>(std::abs(x)));
+      tail_[tail_at_++ % std::size(tail_)] = x;
+    }
+    m.frames += frames;
+  }
+
+  void finish(Measure& m) {
+    ebur128_loudness_global(state_, &m.loudness_lufs);
+    for (const float x : tail_) m.end_peak = std::max(m.end_peak, double(std::abs(x)));
+  }
+
+ private:
+  ebur128_state* state_;
+  std::vector<char> pending_;
+  std::vector<float> samples_;
+  float tail_[2 * kRateHz / 100] = {};
+  std::size_t tail_at_ = 0;
+};
+
+Measure measure(const std::string& song) {
+  Measure m;
+  Meter meter;
+  knotwave::support::ProgramOptions options;
+  options.timeout_s = 600;
+  options.on_output = [&](std::span<const char> bytes) { meter.add(bytes, m); };
+  const auto run = run_program({"knotwave-render", kBank, song, "-o", "-", "--quiet"}, options);
+  meter.finish(m);
+  m.exit_code = run.exit_code;
+  m.err = run.err;
+  m.cpu_s = run.cpu_s;
+  return m;
+}
+
+bool sounds_a_note(const std::string& path) {
+  const auto song = knotwave::io::read_midi_file(path);
+  if (!song) return false;
+  for (const auto& e : song->events) {
+    if ((e.bytes[0] & 0xF0) == 0x90 && e.bytes[2] > 0 && e.sysex_size == 0) return true;
+  }
+  return false;
+}
+
+/// Renders each file, checks it, and prints a line of totals.
+void check_songs(const std::vector<std::string>& songs) {
+  double seconds = 0, cpu_s = 0, quietest = 0, loudest = -100, highest = 0;
+  for (const auto& song : songs) {
+    const Measure m = measure(song);
+    ASSERT_EQ(m.exit_code, 0) << song << "\n" << m.err;
+    EXPECT_TRUE(m.finite) << song;
+    EXPECT_LT(m.peak, 1.0) << song;
+    EXPECT_LT(m.end_peak, 1e-3) << song << " does not end in silence";
+    seconds += static_cast<double>(m.frames) / kRateHz;
+    cpu_s += m.cpu_s;
+    highest = std::max(highest, m.peak);
+    std::printf("%-40s %6.1f s %7.2f LUFS peak %6.2f dBFS\n",
+                std::filesystem::path(song).filename().c_str(),
+                static_cast<double>(m.frames) / kRateHz, m.loudness_lufs, 20 * std::log10(m.peak));
+    if (!sounds_a_note(song)) {
+      EXPECT_EQ(m.peak, 0) << song << " has no note";
+      continue;
+    }
+    EXPECT_GE(m.loudness_lufs, -30) << song;
+    EXPECT_LE(m.loudness_lufs, -12) << song;
+    quietest = std::min(quietest, m.loudness_lufs);
+    loudest = std::max(loudest, m.loudness_lufs);
+  }
+  std::printf(
+      "%zu files, %.0f s of music in %.0f s: %.1f times real time; %.1f to %.1f LUFS, "
+      "highest peak %.2f dBFS\n",
+      songs.size(), seconds, cpu_s, seconds / cpu_s, quietest, loudest, 20 * std::log10(highest));
+}
+
+TEST(GeneralMidi, OwnScoresAreUnclippedAndSensiblyLoud) {
+  std::vector<std::string> songs;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(KNOTWAVE_SOURCE_DIR "/examples/scores")) {
+    if (entry.path().extension() == ".mid") songs.push_back(entry.path().string());
+  }
+  ASSERT_GE(songs.size(), 3u);
+  std::sort(songs.begin(), songs.end());
+  check_songs(songs);
+}
+
+TEST(GeneralMidi, ASampleOfTheCorpusIsUnclippedAndSensiblyLoud) {
+  const auto all = knotwave::support::corpus_files("midi", {".mid"});
+  if (all.empty()) GTEST_SKIP() << "KNOTWAVE_CORPUS is not set: no file of the corpus was run";
+  std::vector<std::string> songs;
+  for (std::size_t i = 0; i < 30; ++i) songs.push_back(all[i * all.size() / 30]);
+  check_songs(songs);
+}
+
+TEST(GeneralMidiStress, EveryFileOfTheCorpusIsUnclippedAndSensiblyLoud) {
+  const auto all = knotwave::support::corpus_files("midi", {".mid"});
+  if (all.empty()) GTEST_SKIP() << "KNOTWAVE_CORPUS is not set: no file of the corpus was run";
+  check_songs(all);
+}
+
+}  // namespace

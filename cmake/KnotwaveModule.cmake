@@ -34,8 +34,16 @@ function(knotwave_test module)
   add_executable(test_${module} ${arg_SOURCES})
   target_link_libraries(test_${module} PRIVATE
     ${arg_LIBS} knotwave_test_support GTest::gmock GTest::gtest_main knotwave_flags)
-  target_compile_definitions(test_${module} PRIVATE
-    KNOTWAVE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KNOTWAVE_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
+  # Only a source that names a folder is told it, so that the objects of the others are the same in
+  # every checkout and ccache finds them.
+  foreach(source IN LISTS arg_SOURCES)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+    file(STRINGS ${source} uses_folder REGEX "KNOTWAVE_(SOURCE|BIN)_DIR")
+    if(uses_folder)
+      set_source_files_properties(${source} PROPERTIES COMPILE_DEFINITIONS
+        "KNOTWAVE_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\";KNOTWAVE_BIN_DIR=\"${PROJECT_BINARY_DIR}/bin\"")
+    endif()
+  endforeach()
   gtest_discover_tests(test_${module} TEST_FILTER "-*Stress.*"
     PROPERTIES LABELS ${module} TIMEOUT 300 DISCOVERY_TIMEOUT 60)
   gtest_discover_tests(test_${module} TEST_FILTER "*Stress.*" TEST_LIST test_${module}_STRESS

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "random_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace knotwave::test {
+namespace {
+
+using curves::CurveSpec;
+
+std::vector<double> inner_knots(Dice& dice, int degree, int count) {
+  std::vector<double> inner;
+  for (int i = 0; i < count; ++i) inner.push_back(dice.between(0.001, 0.999));
+  if (dice.one_in(3)) {  // uniform
+    for (int i = 0; i < count; ++i) inner[std::size_t(i)] = (i + 1.0) / (count + 1.0);
+  }
+  if (count > 1 && dice.one_in(4)) {  // a knot several times
+    for (int i = 1; i < std::min(count, degree); ++i) inner[std::size_t(i)] = inner[0];
+  }
+  if (count > 1 && dice.one_in(4)) inner[1] = inner[0] + std::ldexp(1.0, -10 - dice.below(30));
+  std::sort(inner.begin(), inner.end());
+  return inner;
+}
+
+void fill_knots(Dice& dice, CurveSpec& spec, int count) {
+  const int p = spec.degree;
+  if (dice.one_in(5)) return;  // left out
+  const double scale = dice.one_in(3) ? std::ldexp(1.0, dice.below(40) - 20) : 1.0;
+  const double shift = dice.one_in(3) ? dice.between(-1000, 1000) : 0.0;
+  std::vector<double> knots;
+  if (spec.periodic) {
+    knots = inner_knots(dice, p, count - 1);
+    knots.insert(knots.begin(), 0.0);
+    knots.push_back(1.0);
+  } else {
+    knots = inner_knots(dice, p, count - p - 1);
+    const bool clamped = !dice.one_in(4);
+    for (int i = 0; i <= p; ++i) {
+      knots.insert(knots.begin(), clamped ? 0.0 : -0.01 * i);
+      knots.push_back(clamped ? 1.0 : 1.0 + 0.3 * i);
+    }
+  }
+  for (double& knot : knots) knot = scale * (shift + knot);
+  spec.knots = knots;
+}
+
+}  // namespace
+
+CurveSpec random_spec(Dice& dice, int degree) {
+  CurveSpec spec;
+  spec.name = "random";
+  spec.degree = degree > 0 ? degree : 1 + dice.below(curves::kMaxDegree);
+  spec.dim = 1 + dice.below(3);
+  spec.periodic = dice.one_in(4);
+  const int count = spec.degree + 1 + dice.below(12);
+  const int size = dice.below(13) - 6;
+  const bool offset = dice.one_in(3);  // all just below a power of two: the ulp counts double
+  for (int i = 0; i < count * spec.dim; ++i) {
+    spec.points.push_back(offset ? 1.96875 + dice.between(0, 0.03)
+                                 : std::ldexp(dice.between(-1, 1), 3 * size));
+  }
+  if (dice.one_in(2)) {
+    const double decades = dice.one_in(2) ? 6 : 1;
+    for (int i = 0; i < count; ++i) {
+      spec.weights.push_back(
+          std::clamp(std::pow(10.0, dice.between(-decades, decades)), 1e-6, 1e6));
+    }
+  }
+  fill_knots(dice, spec, count);
+  return spec;
+}
+
+curves::NurbsCurve random_curve(Dice& dice, int degree) {
+  auto curve = curves::NurbsCurve::create(random_spec(dice, degree));
+  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
+  return std::move(*curve);
+}
+
+double random_parameter(Dice& dice, const curves::NurbsCurve& curve) {
+  const auto knots = curve.knots();
+  const double knot = knots[std::size_t(dice.below(static_cast<int>(knots.size())))];
+  switch (dice.below(6)) {
+    case 0:
+      return knot;
+    case 1:
+      return std::nextafter(knot, dice.one_in(2) ? -1e30 : 1e30);
+    case 2:
+      return dice.one_in(2) ? curve.u_min() : curve.u_max();
+    default:
+      return dice.between(curve.u_min(), curve.u_max());
+  }
+}
+
+double largest_coordinate(const curves::NurbsCurve& curve) {
+  double largest = 0;
+  for (const double x : curve.points()) largest = std::max(largest, std::abs(x));
+  return largest;
+}
+
+double ulp_of(double x) {
+  return std::nextafter(std::abs(x), std::numeric_limits<double>::infinity()) - std::abs(x);
+}
+
+}  // namespace knotwave::test

@@ -53,14 +53,22 @@ CurveSpec one_period(const HomogeneousCurve& all, int first_true, CurveSpec spec
   return spec;
 }
 
-// One more u in a periodic curve. The knot is inserted in one period of the expanded curve; the n+1
-// points from the first blended one on are right, the p others are their images.
-Result<NurbsCurve> insert_periodic(const NurbsCurve& curve, double u) {
+// Knots in a periodic curve: inserted in one period of the expanded curve. The points of one period
+// from the first blended one on are right, the p others are their images.
+Result<NurbsCurve> insert_periodic(const NurbsCurve& curve, double u, int times) {
   HomogeneousCurve all(curve);
   const int span = find_span(all.knots, all.degree, u, Side::right);
-  all.insert(u);
+  for (int i = 0; i < times; ++i) all.insert(u);
   const int first_true = std::min(span - all.degree + 1, all.degree);
   return NurbsCurve::create(one_period(all, first_true, empty_spec_of(curve)));
+}
+
+// How often the knot u is there; on the seam of a periodic curve both ends count as one place.
+int multiplicity_of(const NurbsCurve& curve, double u) {
+  const std::vector<double> knots = curve.spec().knots;
+  const auto at_u = std::count(knots.begin(), knots.end(), u);
+  if (!curve.is_periodic() || u != curve.u_min()) return static_cast<int>(at_u);
+  return static_cast<int>(at_u + std::count(knots.begin(), knots.end(), curve.u_max()) - 1);
 }
 
 }  // namespace
@@ -69,14 +77,7 @@ Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times) {
   if (!inside(curve, u)) return outside(curve, u, "outside");
   if (curve.is_periodic() && u == curve.u_max()) u = curve.u_min();
   const bool at_end = !curve.is_periodic() && (u == curve.u_min() || u == curve.u_max());
-  HomogeneousCurve all(curve);
-  int multiplicity = all.multiplicity(u);
-  if (curve.is_periodic() && u == curve.u_min()) {
-    const CurveSpec written = curve.spec();
-    multiplicity =
-        static_cast<int>(std::count(written.knots.begin(), written.knots.end(), u) +
-                         std::count(written.knots.begin(), written.knots.end(), curve.u_max()) - 1);
-  }
+  const int multiplicity = multiplicity_of(curve, u);
   if (at_end && multiplicity >= curve.degree()) {
     return outside(curve, u, "a clamped end, knots go inside");
   }
@@ -87,11 +88,8 @@ Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times) {
                     std::to_string(curve.degree()) + " allows " + std::to_string(curve.degree()));
   }
   if (times == 0) return curve;
-  if (curve.is_periodic()) {
-    Result<NurbsCurve> result = curve;
-    for (int i = 0; i < times && result; ++i) result = insert_periodic(*result, u);
-    return result;
-  }
+  if (curve.is_periodic()) return insert_periodic(curve, u, times);
+  HomogeneousCurve all(curve);
   for (int i = 0; i < times; ++i) all.insert(u);
   CurveSpec spec = empty_spec_of(curve);
   spec.jumps.assign(curve.jumps().begin(), curve.jumps().end());

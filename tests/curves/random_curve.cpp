@@ -21,7 +21,7 @@ std::vector<double> inner_knots(Dice& dice, int degree, int count) {
   if (count > 1 && dice.one_in(4)) {  // a knot several times
     for (int i = 1; i < std::min(count, degree); ++i) inner[std::size_t(i)] = inner[0];
   }
-  if (count > 1 && dice.one_in(4)) inner[1] = inner[0] + std::ldexp(1.0, -10 - dice.below(30));
+  if (count > 1 && dice.one_in(4)) inner[1] = inner[0] + std::ldexp(1.0, -10 - dice.below(20));
   std::sort(inner.begin(), inner.end());
   return inner;
 }
@@ -30,7 +30,9 @@ void fill_knots(Dice& dice, CurveSpec& spec, int count) {
   const int p = spec.degree;
   if (dice.one_in(5)) return;  // left out
   const double scale = dice.one_in(3) ? std::ldexp(1.0, dice.below(40) - 20) : 1.0;
-  const double shift = dice.one_in(3) ? dice.between(-1000, 1000) : 0.0;
+  // Periods are shifted by doubles: on a grid of 2^-30 that is exact, so edits can be judged to 4
+  // ulp.
+  const double shift = dice.one_in(3) ? std::floor(dice.between(-1000, 1000)) : 0.0;
   std::vector<double> knots;
   if (spec.periodic) {
     knots = inner_knots(dice, p, count - 1);
@@ -43,6 +45,9 @@ void fill_knots(Dice& dice, CurveSpec& spec, int count) {
       knots.insert(knots.begin(), clamped ? 0.0 : -0.01 * i);
       knots.push_back(clamped ? 1.0 : 1.0 + 0.3 * i);
     }
+  }
+  if (spec.periodic) {
+    for (double& knot : knots) knot = std::floor(std::ldexp(knot, 30)) * 0x1p-30;
   }
   for (double& knot : knots) knot = scale * (shift + knot);
   spec.knots = knots;

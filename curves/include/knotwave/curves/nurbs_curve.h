@@ -58,7 +58,8 @@ class NurbsCurve {
   double u_min() const noexcept { return knots_[static_cast<std::size_t>(degree_)]; }
   double u_max() const noexcept { return knots_[static_cast<std::size_t>(point_count())]; }
 
-  /// Points as evaluated: a periodic curve has its first p points again at the end. n here.
+  /// Points as evaluated: a periodic curve has its first p points again at the end. n here. Its
+  /// knots go on to both sides, shifted by the period and rounded.
   int point_count() const noexcept { return static_cast<int>(weights_.size()); }
   std::span<const double> points() const noexcept { return points_; }    ///< [n*dim]
   std::span<const double> weights() const noexcept { return weights_; }  ///< [n], 1 without
@@ -70,7 +71,8 @@ class NurbsCurve {
 
   /// C(u) to out[dim]. [any] u is clamped to the domain (wrapped if periodic), NaN counts as u_min.
   /// At a jump the right-hand value; at u_max the left-hand one. A clamped curve returns its end
-  /// points exactly. Within 4 ulp of max|P| of exact arithmetic. O(p^2), no allocation.
+  /// points exactly. The exact value rounded: within half an ulp of max|P|, so never outside the
+  /// range of its control points. O(p^2) in double-double, no allocation.
   void evaluate(double u, std::span<double> out) const noexcept;
   void evaluate(double u, Side side, std::span<double> out) const noexcept;
 

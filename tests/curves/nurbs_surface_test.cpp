@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "knotwave/curves/nurbs_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "random_curve.h"
+#include "support/seed.h"
+
+namespace knotwave::test {
+namespace {
+
+using curves::NurbsCurve;
+using curves::NurbsSurface;
+using curves::Side;
+using curves::SurfaceSpec;
+
+SurfaceSpec random_surface_spec(Dice& dice) {
+  SurfaceSpec spec;
+  spec.name = "random";
+  spec.degree_u = 1 + dice.below(7);
+  spec.degree_v = 1 + dice.below(5);
+  spec.dim = 1 + dice.below(3);
+  spec.count_u = spec.degree_u + 1 + dice.below(5);
+  spec.count_v = spec.degree_v + 1 + dice.below(5);
+  spec.periodic_u = dice.one_in(2);
+  const int count = spec.count_u * spec.count_v;
+  for (int i = 0; i < count * spec.dim; ++i) spec.points.push_back(dice.between(-1, 1));
+  if (dice.one_in(2)) {
+    for (int i = 0; i < count; ++i) spec.weights.push_back(dice.between(0.1, 3));
+  }
+  if (!spec.periodic_u && dice.one_in(2)) {
+    for (int i = 0; i < spec.count_u + spec.degree_u + 1; ++i) spec.knots_u.push_back(i * i);
+  }
+  return spec;
+}
+
+NurbsSurface made(SurfaceSpec spec) {
+  auto surface = NurbsSurface::create(std::move(spec));
+  EXPECT_TRUE(surface) << (surface ? "" : surface.error().message);
+  return std::move(*surface);
+}
+
+std::vector<double> at(const NurbsSurface& surface, double u, double v) {
+  std::vector<double> out(std::size_t(surface.dim()));
+  surface.evaluate(u, v, out);
+  return out;
+}
+
+SurfaceSpec patch() {
+  SurfaceSpec spec;
+  spec.name = "pad";
+  spec.degree_u = 2;
+  spec.degree_v = 1;
+  spec.count_u = 3;
+  spec.count_v = 2;
+  spec.points = {0, 1, 2, 3, 4, 8};
+  return spec;
+}
+
+TEST(NurbsSurface, BilinearCornersAndMiddleAreExact) {
+  SurfaceSpec spec = patch();
+  spec.degree_u = 1;
+  spec.count_u = 2;
+  spec.points = {0, 1, 2, 7};
+  const NurbsSurface surface = made(spec);
+  EXPECT_EQ(at(surface, 0, 0)[0], 0);
+  EXPECT_EQ(at(surface, 1, 0)[0], 1);
+  EXPECT_EQ(at(surface, 0, 1)[0], 2);
+  EXPECT_EQ(at(surface, 1, 1)[0], 7);
+  EXPECT_EQ(at(surface, 0.5, 0.5)[0], 2.5);
+}
+
+// A quarter circle swept along z: x^2 + y^2 = 1 everywhere, z linear.
+TEST(NurbsSurface, SweptArcKeepsItsRadius) {
+  SurfaceSpec spec = patch();
+  spec.dim = 3;
+  spec.points = {1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 2, 1, 1, 2, 0, 1, 2};
+  spec.weights = {1, 1, 2, 1, 1, 2};
+  const NurbsSurface surface = made(spec);
+  for (double u = 0; u <= 1; u += 0.0625) {
+    for (double v = 0; v <= 1; v += 0.125) {
+      const auto p = at(surface, u, v);
+      EXPECT_NEAR(p[0] * p[0] + p[1] * p[1], 1, 4e-16);
+      EXPECT_NEAR(p[2], 2 * v, 4e-16);
+    }
+  }
+}
+
+TEST(NurbsSurface, IsoCurvesAreTheSurfaceWithin4Ulp) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < 500; ++round) {
+    const NurbsSurface surface = made(random_surface_spec(dice));
+    const double u = dice.between(surface.u_min(), surface.u_max());
+    const double v = dice.between(surface.v_min(), surface.v_max());
+    const NurbsCurve row = surface.iso_curve_at_v(v), column = surface.iso_curve_at_u(u);
+    EXPECT_EQ(row.is_periodic(), surface.is_periodic_u());
+    double a[3], b[3];
+    row.evaluate(u, a);
+    column.evaluate(v, b);
+    const auto value = at(surface, u, v);
+    for (std::size_t c = 0; c < value.size(); ++c) {
+      EXPECT_NEAR(a[c], value[c], 4 * ulp_of(1));
+      EXPECT_NEAR(b[c], value[c], 4 * ulp_of(1));
+    }
+  }
+}
+
+// The partial derivatives along u alone and v alone are those of the iso curves, which are judged
+// by exact rationals; the mixed ones are derivatives of those, by differences.
+TEST(NurbsSurface, PartialsAreThoseOfTheIsoCurves) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < 300; ++round) {
+    const NurbsSurface surface = made(random_surface_spec(dice));
+    const double u = dice.between(surface.u_min(), surface.u_max());
+    const double v = dice.between(0.1, 0.9);
+    const int order = 3, dim = surface.dim();
+    std::vector<double> all(std::size_t(16 * dim)), along(std::size_t(4 * dim));
+    surface.derivatives(u, v, order, all);
+    const auto of = [&](int k, int l, int c) { return all[std::size_t((k * 4 + l) * dim + c)]; };
+    const auto near = [](double a, double b, double scale) {
+      EXPECT_NEAR(a, b, 1e-12 * std::max(std::abs(b), scale));
+    };
+    surface.iso_curve_at_v(v).derivatives(u, order, Side::right, along);
+    for (int k = 0; k <= order; ++k) {
+      for (int c = 0; c < dim; ++c) {
+        near(of(k, 0, c), along[std::size_t(k * dim + c)], std::pow(100, k));
+      }
+    }
+    surface.iso_curve_at_u(u).derivatives(v, order, Side::right, along);
+    for (int l = 0; l <= order; ++l) {
+      for (int c = 0; c < dim; ++c) {
+        near(of(0, l, c), along[std::size_t(l * dim + c)], std::pow(100, l));
+      }
+    }
+    EXPECT_EQ(of(2, 2, 0), 0);  // beyond k + l <= order
+  }
+}
+
+TEST(NurbsSurface, MixedPartialIsTheSlopeOfTheSlope) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < 300; ++round) {
+    SurfaceSpec spec = random_surface_spec(dice);
+    spec.knots_u.clear();
+    spec.degree_v = std::max(spec.degree_v, 2);
+    spec.count_v = spec.degree_v + 1;  // one span along v: differences meet no knot
+    spec.points.resize(std::size_t(spec.count_u * spec.count_v * spec.dim), 0.5);
+    if (!spec.weights.empty()) {
+      spec.weights.resize(std::size_t(spec.count_u * spec.count_v), 1.0);
+    }
+    const NurbsSurface surface = made(spec);
+    const double u = dice.between(0.01, 0.99), v = dice.between(0.1, 0.9), h = 1e-5;
+    std::vector<double> here(std::size_t(9 * spec.dim)), up(here), down(here);
+    surface.derivatives(u, v, 2, here);
+    surface.derivatives(u, v + h, 2, up);
+    surface.derivatives(u, v - h, 2, down);
+    for (int c = 0; c < spec.dim; ++c) {
+      const auto u_slope = std::size_t(3 * spec.dim + c), mixed = std::size_t(4 * spec.dim + c);
+      EXPECT_NEAR(here[mixed], (up[u_slope] - down[u_slope]) / (2 * h), 1e-4);
+    }
+  }
+}
+
+TEST(NurbsSurface, ParametersAreClampedWrappedOrTheMinimum) {
+  SurfaceSpec spec = patch();
+  spec.periodic_u = true;
+  const NurbsSurface surface = made(spec);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(at(surface, 1.25, 0.5), at(surface, 0.25, 0.5));
+  EXPECT_EQ(at(surface, 0.25, 7), at(surface, 0.25, 1));
+  EXPECT_EQ(at(surface, nan, nan), at(surface, 0, 0));
+  EXPECT_EQ(at(made(patch()), 9, 9)[0], 8);
+}
+
+TEST(NurbsSurface, SpecOfASurfaceMakesAnEqualSurface) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < 300; ++round) {
+    const NurbsSurface surface = made(random_surface_spec(dice));
+    EXPECT_TRUE(made(surface.spec()) == surface);
+  }
+}
+
+TEST(NurbsSurface, FaultsSayTheDirection) {
+  const auto message = [](auto&& break_it) {
+    SurfaceSpec spec = patch();
+    break_it(spec);
+    const auto surface = NurbsSurface::create(spec);
+    return surface ? std::string("none") : surface.error().message;
+  };
+  EXPECT_EQ(message([](SurfaceSpec& s) { s.degree_v = 16; }),
+            "surface 'pad' along v: degree 16 is outside 1..15");
+  EXPECT_EQ(message([](SurfaceSpec& s) { s.degree_u = 3; }),
+            "surface 'pad' along u: 3 points, degree 3 needs at least 4");
+  EXPECT_EQ(message([](SurfaceSpec& s) {
+              s.knots_v = {0, 0, 1};
+            }),
+            "surface 'pad' along v: 3 knots, expected 4 (points + degree + 1)");
+  EXPECT_EQ(message([](SurfaceSpec& s) { s.points.pop_back(); }),
+            "surface 'pad': 5 numbers, 2 rows of 3 points with 1 coordinate are 6");
+  EXPECT_EQ(message([](SurfaceSpec& s) {
+              s.weights = {1, 1};
+            }),
+            "surface 'pad': 2 weights for 6 points");
+  EXPECT_EQ(message([](SurfaceSpec& s) { s.points[4] = 1e7; }),
+            "surface 'pad': point 4 (1e+07) is outside -1e+06..1e+06");
+}
+
+}  // namespace
+}  // namespace knotwave::test

@@ -39,7 +39,8 @@ class BankProgram {
     int choke_group = 0;
     bool drum = false;
   };
-  /// [audio] channel 0..15.
+  /// [audio] channel 0..15. The first entry that fits; a bank number without one plays the program
+  /// of any bank; a drum key without one plays nothing.
   Choice choose(int channel, int bank_msb, int bank_lsb, int program, int key) const KNOTWAVE_RT;
 
   double gain_lin() const KNOTWAVE_RT { return gain_lin_; }
@@ -52,7 +53,9 @@ class BankProgram {
   std::vector<std::unique_ptr<const PatchProgram>> patches_;
   std::vector<BankEntry> entries_;
   std::vector<int> entry_patch_;
-  int drum_channel_ = 9;
+  std::vector<double> entry_gain_;
+  int drum_channel_ = 9;    ///< from 0; -1 = none
+  bool has_drums_ = false;  ///< some entry has a key
   double gain_lin_ = 1;
   std::vector<std::string> report_;
 };

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+#include "modulation.h"
+
+#include <algorithm>
+
+#include "knotwave/base/elementary.h"
+
+namespace knotwave::engine {
+namespace {
+
+constexpr bool is_external(MapSource source) {
+  return source != MapSource::envelope && source != MapSource::lfo;
+}
+
+int smoothing_samples(double seconds, double rate_hz) KNOTWAVE_RT {
+  return static_cast<int>(std::clamp(seconds * rate_hz + 0.5, 1.0, 1e8));
+}
+
+/// A source over the chunk: an envelope, an LFO, or the player's value on its way.
+Signal source_signal(MapSource source, int index, const dsp::Smoother& smoother, std::int64_t first,
+                     std::size_t n, ModulationScratch& scratch, ChunkBuffer& buffer) KNOTWAVE_RT {
+  const auto i = static_cast<std::size_t>(index);
+  if (source == MapSource::envelope) return {0, scratch.envelopes[i].data()};
+  if (source == MapSource::lfo) return {0, scratch.lfos[i].data()};
+  if (smoother.is_still(first)) return {smoother.target(), nullptr};
+  smoother.render(first, std::span(buffer).first(n));
+  return {0, buffer.data()};
+}
+
+/// The moved numbers of a curve, at every sample. Pointers to [n] each.
+struct MovedNumbers {
+  std::array<const double*, curves::kMaxControls> values;
+  std::size_t count = 0;
+  bool all_constant = true;
+};
+MovedNumbers moved_numbers(std::span<const int> slots, std::size_t n,
+                           ModulationScratch& scratch) KNOTWAVE_RT {
+  MovedNumbers moved;
+  for (const int slot : slots) {
+    if (moved.count == moved.values.size()) break;
+    const Signal& number = scratch.slots[static_cast<std::size_t>(slot)];
+    ChunkBuffer& buffer = scratch.controls[moved.count];
+    if (number.is_constant()) std::fill_n(buffer.begin(), n, number.constant);
+    moved.values[moved.count++] = number.is_constant() ? buffer.data() : number.values;
+    moved.all_constant = moved.all_constant && number.is_constant();
+  }
+  return moved;
+}
+
+Signal through_curve(const PatchProgram::MapPart& map, const Signal& u, std::size_t n,
+                     curves::CurveCursor& cursor, ModulationScratch& scratch) KNOTWAVE_RT {
+  const MovedNumbers moved = moved_numbers(map.control_slots, n, scratch);
+  if (u.is_constant() && moved.all_constant) {
+    std::array<double, curves::kMaxControls> rest;
+    for (std::size_t k = 0; k < moved.count; ++k) rest[k] = moved.values[k][0];
+    return {map.curve->at_u(u.constant, 0, std::span(rest).first(moved.count)), nullptr};
+  }
+  ChunkBuffer& places = scratch.source;
+  if (u.is_constant()) std::fill_n(places.begin(), n, u.constant);
+  const std::span<const double> at(u.is_constant() ? places.data() : u.values, n);
+  const std::span<double> out = std::span(scratch.shaped).first(n);
+  if (moved.count == 0) {
+    map.curve->render(at, out, cursor);
+  } else {
+    map.curve->render(at, std::span(moved.values).first(moved.count), out, cursor);
+  }
+  return {0, scratch.shaped.data()};
+}
+
+void add(ModulationScratch& scratch, int slot, const Signal& value, std::size_t n) KNOTWAVE_RT {
+  const auto i = static_cast<std::size_t>(slot);
+  scratch.slots[i] = sum(scratch.slots[i], value, n, scratch.slot_values[i]);
+}
+
+}  // namespace
+
+void Modulation::start(const PatchProgram& patch, const NoteContext& note, base::SampleTime time,
+                       double rate_hz, const TempoClock& tempo) KNOTWAVE_RT {
+  const auto maps = patch.maps();
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const PatchProgram::MapPart& map = maps[i];
+    const int samples = smoothing_samples(map.smooth_s, rate_hz);
+    players_[i].source.reset(source_value(note, map.source, map.source_index), samples);
+    players_[i].source_v.reset(source_value(note, map.source_v, map.source_v_index), samples);
+    players_[i].cursor = {};
+  }
+  for (std::size_t i = 0; i < patch.envelopes().size(); ++i) envelopes_[i].reset();
+  limited_joins_seen_ = 0;
+  for (const dsp::Envelope& envelope : envelopes_) limited_joins_seen_ += envelope.limited_joins();
+  for (std::size_t i = 0; i < patch.lfos().size(); ++i) {
+    const dsp::LfoSpec& spec = patch.lfos()[i].spec;
+    base::RandomStream stream = note.random;
+    stream.purpose = base::kRandomLfo | static_cast<std::uint32_t>(i << 8);
+    if (spec.mode == dsp::LfoSpec::Mode::free) stream.voice = 0;  // all voices agree
+    lfos_[i].start(spec, time, rate_hz, stream);
+  }
+  open_gates(patch, note, time, rate_hz, tempo);
+}
+
+void Modulation::retrigger(const PatchProgram& patch, const NoteContext& note,
+                           base::SampleTime time, double rate_hz,
+                           const TempoClock& tempo) KNOTWAVE_RT {
+  follow(patch, note, base::first_sample(time));
+  open_gates(patch, note, time, rate_hz, tempo);
+}
+
+double Modulation::time_octaves(const PatchProgram& patch, int envelope) const KNOTWAVE_RT {
+  double octaves = 0;
+  for (std::size_t i = 0; i < patch.maps().size(); ++i) {
+    const PatchProgram::MapPart& map = patch.maps()[i];
+    if (map.slot != kSlotEnvelopeTime + envelope) continue;
+    double value = players_[i].source.target();
+    if (map.curve) value = map.curve->at_u(value);
+    if (map.surface) {
+      map.surface->evaluate(value, players_[i].source_v.target(), std::span(&value, 1));
+    }
+    octaves += map.depth * value;
+  }
+  return octaves;
+}
+
+void Modulation::open_gates(const PatchProgram& patch, const NoteContext& note,
+                            base::SampleTime time, double rate_hz,
+                            const TempoClock& tempo) KNOTWAVE_RT {
+  for (std::size_t i = 0; i < patch.envelopes().size(); ++i) {
+    const PatchProgram::EnvelopePart& part = patch.envelopes()[i];
+    const double octaves = part.velocity_time * (127 - note.velocity) / 126.0 +
+                           part.key_time * (60 - note.note) / 12 +
+                           time_octaves(patch, static_cast<int>(i));
+    const double unit_s = part.tempo_beats ? tempo.seconds_per_quarter() : 1;
+    envelopes_[i].gate_on(part.program, time, rate_hz, unit_s * base::exp2(octaves));
+  }
+}
+
+void Modulation::release(const PatchProgram& patch, base::SampleTime time) KNOTWAVE_RT {
+  for (std::size_t i = 0; i < patch.envelopes().size(); ++i) {
+    envelopes_[i].gate_off(patch.envelopes()[i].program, time);
+  }
+}
+
+void Modulation::follow(const PatchProgram& patch, const NoteContext& note,
+                        std::int64_t sample) KNOTWAVE_RT {
+  for (std::size_t i = 0; i < patch.maps().size(); ++i) {
+    const PatchProgram::MapPart& map = patch.maps()[i];
+    Player& player = players_[i];
+    if (is_external(map.source)) {
+      player.source.set_target(source_value(note, map.source, map.source_index), sample);
+    }
+    if (map.surface && is_external(map.source_v)) {
+      player.source_v.set_target(source_value(note, map.source_v, map.source_v_index), sample);
+    }
+  }
+}
+
+void Modulation::render(const PatchProgram& patch, const TempoClock& tempo, std::int64_t first,
+                        std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT {
+  scratch.slots.fill({});
+  for (const PatchProgram::Step& step : patch.schedule()) {
+    const auto index = static_cast<std::size_t>(step.index);
+    switch (step.kind) {
+      case PatchProgram::Step::Kind::map:
+        render_map(patch, index, first, n, scratch);
+        break;
+      case PatchProgram::Step::Kind::envelope:
+        render_envelope(patch, index, first, n, scratch);
+        break;
+      case PatchProgram::Step::Kind::lfo:
+        render_lfo(patch, index, tempo, first, n, scratch);
+        break;
+    }
+  }
+}
+
+void Modulation::render_map(const PatchProgram& patch, std::size_t index, std::int64_t first,
+                            std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT {
+  const PatchProgram::MapPart& map = patch.maps()[index];
+  Player& player = players_[index];
+  Signal value =
+      source_signal(map.source, map.source_index, player.source, first, n, scratch, scratch.source);
+  if (map.curve) {
+    value = through_curve(map, value, n, player.cursor, scratch);
+  } else if (map.surface) {
+    const Signal v = source_signal(map.source_v, map.source_v_index, player.source_v, first, n,
+                                   scratch, scratch.source_v);
+    value = combined(value, v, n, scratch.shaped, [&](double at_u, double at_v) {
+      double out = 0;
+      map.surface->evaluate(at_u, at_v, std::span(&out, 1));
+      return out;
+    });
+  }
+  value = mapped(value, n, scratch.shaped, [&](double x) { return map.depth * x; });
+  if (map.is_control) {
+    value = mapped(value, n, scratch.shaped, [&](double x) {
+      return map.low + (map.high - map.low) * std::clamp(x, 0.0, 1.0);
+    });
+  }
+  add(scratch, map.slot, value, n);
+}
+
+void Modulation::render_envelope(const PatchProgram& patch, std::size_t index, std::int64_t first,
+                                 std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT {
+  const PatchProgram::EnvelopePart& part = patch.envelopes()[index];
+  const MovedNumbers moved = moved_numbers(part.control_slots, n, scratch);
+  envelopes_[index].render(part.program, first, std::span(moved.values).first(moved.count),
+                           std::span(scratch.envelopes[index]).first(n));
+}
+
+void Modulation::render_lfo(const PatchProgram& patch, std::size_t index, const TempoClock& tempo,
+                            std::int64_t first, std::size_t n,
+                            ModulationScratch& scratch) KNOTWAVE_RT {
+  const PatchProgram::LfoPart& part = patch.lfos()[index];
+  std::span<const double> rate_factor, beats;
+  if (part.rate_moves) {
+    const Signal factor = mapped(scratch.slots[kSlotLfoRate + index], n, scratch.source,
+                                 [](double x) { return base::exp2(x); });
+    if (factor.is_constant()) std::fill_n(scratch.source.begin(), n, factor.constant);
+    rate_factor = std::span(scratch.source).first(n);
+  }
+  if (part.spec.beats > 0) {
+    for (std::size_t i = 0; i < n; ++i) {
+      scratch.beats[i] = tempo.beats_at(first + static_cast<std::int64_t>(i));
+    }
+    beats = std::span(scratch.beats).first(n);
+  }
+  lfos_[index].render(part.spec, part.cycle, first, rate_factor, beats,
+                      std::span(scratch.lfos[index]).first(n));
+}
+
+int Modulation::take_limited_joins(const PatchProgram& patch) KNOTWAVE_RT {
+  int total = 0;
+  for (std::size_t i = 0; i < patch.envelopes().size(); ++i) {
+    total += envelopes_[i].limited_joins();
+  }
+  const int fresh = total - limited_joins_seen_;
+  limited_joins_seen_ = total;
+  return std::max(fresh, 0);
+}
+
+}  // namespace knotwave::engine

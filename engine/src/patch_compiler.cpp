@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// Envelopes, LFOs and the single parts of a patch. Waves are in compile_waves.cpp, maps and their
+// order in compile_maps.cpp.
+#include "patch_compiler.h"
+
+#include <algorithm>
+
+#include "knotwave/base/document.h"
+#include "knotwave/base/elementary.h"
+#include "knotwave/base/suggest.h"
+
+namespace knotwave::engine {
+
+using base::number_text;
+
+Result<std::unique_ptr<const PatchProgram>> PatchProgram::create(
+    const PatchSpec& spec, std::span<const WaveCycles> cycles) {
+  return PatchCompiler(spec, cycles).compile();
+}
+
+Result<std::unique_ptr<const PatchProgram>> PatchCompiler::compile() {
+  program_.reset(new PatchProgram);
+  program_->spec_ = spec_;
+  program_->gain_lin_ = base::db_to_gain(spec_.gain_db);
+  for (auto step : {&PatchCompiler::check_counts, &PatchCompiler::collect_moved_numbers,
+                    &PatchCompiler::compile_envelopes, &PatchCompiler::compile_lfos,
+                    &PatchCompiler::compile_oscillators, &PatchCompiler::compile_maps,
+                    &PatchCompiler::compile_rest, &PatchCompiler::make_schedule}) {
+    if (auto done = (this->*step)(); !done) return about(done.error());
+  }
+  finish_flags();
+  program_->spec_.curves = {};  // compiled away
+  return std::unique_ptr<const PatchProgram>(std::move(program_));
+}
+
+Error PatchCompiler::about(Error error) const {
+  if (error.source.empty()) error.source = spec_.source_name;
+  if (!spec_.name.empty()) error.message = "patch '" + spec_.name + "': " + error.message;
+  return error;
+}
+
+void PatchCompiler::tell(std::string line) { program_->report_.push_back(std::move(line)); }
+
+Result<void> PatchCompiler::check_counts() {
+  const auto too_many = [](const char* what, std::size_t found, int most) {
+    return fail(ErrorCode::value_out_of_range, std::to_string(found) + " " + what + "; at most " +
+                                                   std::to_string(most) + " are possible");
+  };
+  if (spec_.oscillators.size() > kMaxOscillators)
+    return too_many("oscillators", spec_.oscillators.size(), kMaxOscillators);
+  if (spec_.envelopes.size() > kMaxEnvelopes)
+    return too_many("envelopes", spec_.envelopes.size(), kMaxEnvelopes);
+  if (spec_.lfos.size() > kMaxLfos) return too_many("LFOs", spec_.lfos.size(), kMaxLfos);
+  if (spec_.maps.size() > kMaxMaps) return too_many("maps", spec_.maps.size(), kMaxMaps);
+  const int sources = static_cast<int>(spec_.oscillators.size());
+  for (const int end : {spec_.crossfade_a, spec_.crossfade_b}) {
+    if (!spec_.crossfade_on || end == kNoiseSource || (end >= 0 && end < sources)) continue;
+    return fail(ErrorCode::value_out_of_range, "the crossfade names oscillator " +
+                                                   std::to_string(end) + "; there are " +
+                                                   std::to_string(sources));
+  }
+  return {};
+}
+
+Result<const curves::NurbsCurve*> PatchCompiler::curve(const std::string& name,
+                                                       const std::string& role) const {
+  if (const curves::NurbsCurve* found = spec_.curves.find_curve(name)) return found;
+  const auto names = spec_.curves.names();
+  return fail(ErrorCode::unknown_name,
+              role + ": no curve '" + name + "'" + base::suggestion(name, names));
+}
+
+Result<const curves::NurbsCurve*> PatchCompiler::still_curve(const std::string& name,
+                                                             const std::string& role) const {
+  if (!moved_numbers_of(name).empty()) {
+    return fail(ErrorCode::unsupported, role + ": a map moves a number of curve '" + name +
+                                            "', which only envelopes, maps and waves can follow");
+  }
+  return curve(name, role);
+}
+
+Result<void> PatchCompiler::compile_envelopes() {
+  for (const EnvelopeUse& use : spec_.envelopes) {
+    const std::string role = "envelope '" + use.name + "'";
+    auto found = curve(use.curve, role);
+    if (!found) return found.error();
+    PatchProgram::EnvelopePart part;
+    dsp::EnvelopeSpec spec = use.spec;
+    spec.compile.controls.clear();
+    for (const int moved : moved_numbers_of(use.curve)) {
+      spec.compile.controls.push_back(moved_[static_cast<std::size_t>(moved)].range);
+      part.control_slots.push_back(kSlotControl + moved);
+    }
+    auto program = dsp::EnvelopeProgram::create(**found, spec);
+    if (!program) return in_role(program.error(), role);
+    part.name = use.name;
+    part.program = *std::move(program);
+    part.velocity_time = use.velocity_time;
+    part.key_time = use.key_time;
+    part.tempo_beats = use.tempo_beats;
+    tell(role + ": curve '" + use.curve + "', " +
+         std::to_string(part.program.program().piece_count()) + " pieces, largest error " +
+         number_text(part.program.program().max_error()));
+    program_->envelopes_.push_back(std::move(part));
+  }
+  return add_default_amp();
+}
+
+// Up in 3 ms, held, down in 15 ms: for a patch that draws no loudness of its own.
+Result<void> PatchCompiler::add_default_amp() {
+  program_->amp_envelope_ = envelope_index("amp");
+  if (program_->amp_envelope_ >= 0) return {};
+  curves::CurveSpec gate;
+  gate.name = "amp";
+  gate.degree = 2;
+  gate.points = {0, 1, 1, 1, 0, 0};
+  gate.knots = {0, 0, 0, 0.003, 0.003, 0.0105, 0.018, 0.018, 0.018};
+  auto made = curves::NurbsCurve::create(gate);
+  if (!made) return made.error();
+  dsp::EnvelopeSpec spec;
+  spec.seconds = 0.018;
+  spec.sustain_u = 0.003;
+  auto program = dsp::EnvelopeProgram::create(*made, spec);
+  if (!program) return in_role(program.error(), "the built-in amp envelope");
+  program_->amp_envelope_ = static_cast<int>(program_->envelopes_.size());
+  PatchProgram::EnvelopePart part;
+  part.name = "amp";
+  part.program = *std::move(program);
+  program_->envelopes_.push_back(std::move(part));
+  return {};
+}
+
+Result<void> PatchCompiler::compile_lfos() {
+  for (const LfoUse& use : spec_.lfos) {
+    const std::string role = "lfo '" + use.name + "'";
+    auto found = still_curve(use.curve, role);
+    if (!found) return found.error();
+    auto cycle = curves::compile_function(**found);
+    if (!cycle) return in_role(cycle.error(), role);
+    tell(role + ": curve '" + use.curve + "', " + std::to_string(cycle->piece_count()) +
+         " pieces, largest error " + number_text(cycle->max_error()));
+    program_->lfos_.push_back({use.name, use.spec, *std::move(cycle), false});
+  }
+  return {};
+}
+
+Result<void> PatchCompiler::compile_rest() {
+  if (!spec_.shaper_curve.empty()) {
+    auto found = still_curve(spec_.shaper_curve, "shaper");
+    if (!found) return found.error();
+    auto shaper = dsp::ShaperProgram::create(**found);
+    if (!shaper) return in_role(shaper.error(), "shaper");
+    program_->shaper_ = *std::move(shaper);
+  }
+  if (spec_.crossfade_law == "linear") {
+    program_->crossfade_law_ = dsp::CrossfadeLaw::linear();
+  } else if (!spec_.crossfade_law.empty()) {
+    auto found = still_curve(spec_.crossfade_law, "crossfade");
+    if (!found) return found.error();
+    auto law = dsp::CrossfadeLaw::create(**found);
+    if (!law) return in_role(law.error(), "crossfade");
+    program_->crossfade_law_ = *std::move(law);
+  }
+  if (!spec_.glide_curve.empty()) {
+    auto found = still_curve(spec_.glide_curve, "glide");
+    if (!found) return found.error();
+    auto glide = curves::compile_function(**found);
+    if (!glide) return in_role(glide.error(), "glide");
+    program_->glide_curve_ = *std::move(glide);
+  }
+  return {};
+}
+
+void PatchCompiler::finish_flags() {
+  PatchProgram& p = *program_;
+  p.is_mono_ = p.noise_.gain_lin == 0 || p.noise_.pan == 0.5;
+  for (const PatchProgram::Source& source : p.oscillators_) {
+    if (source.gain_lin == 0) continue;
+    if (source.pan != 0.5 || source.tables->channels() != 1) p.is_mono_ = false;
+  }
+  for (const PatchProgram::MapPart& map : p.maps_) {
+    if (map.slot >= kSlotSourcePan && map.slot < kSlotSourcePan + kMaxSources) p.is_mono_ = false;
+    for (std::size_t i = 0; i < p.oscillators_.size(); ++i) {
+      if (map.slot == kSlotSourcePhase + static_cast<int>(i)) p.oscillators_[i].phase_moves = true;
+    }
+    for (std::size_t i = 0; i < p.lfos_.size(); ++i) {
+      if (map.slot == kSlotLfoRate + static_cast<int>(i)) p.lfos_[i].rate_moves = true;
+    }
+    const bool loudness = map.slot == kSlotAmp || map.slot == kSlotGain;
+    const bool velocity = map.source == MapSource::velocity || map.source_v == MapSource::velocity;
+    if (loudness && velocity) p.velocity_law_ = false;
+  }
+}
+
+int PatchCompiler::envelope_index(const std::string& name) const {
+  for (std::size_t i = 0; i < spec_.envelopes.size(); ++i) {
+    if (spec_.envelopes[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+Error PatchCompiler::in_role(Error error, const std::string& role) {
+  error.message = role + ": " + error.message;
+  return error;
+}
+
+}  // namespace knotwave::engine

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// The steps from a PatchSpec to a PatchProgram. [control]
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "knotwave/engine/patch_program.h"
+
+namespace knotwave::engine {
+
+class PatchCompiler {
+ public:
+  PatchCompiler(const PatchSpec& spec, std::span<const WaveCycles> cycles)
+      : spec_(spec), cycles_(cycles) {}
+  /// In this order: moved numbers first, because every curve is compiled with its own.
+  Result<std::unique_ptr<const PatchProgram>> compile();
+
+ private:
+  /// A number of a curve that a map moves.
+  struct MovedNumber {
+    std::string curve;
+    curves::ControlRange range;
+    int map = 0;
+  };
+
+  Result<void> check_counts();
+  Result<void> collect_moved_numbers();
+  Result<void> compile_oscillators();
+  Result<void> compile_wave(const OscillatorSpec& oscillator, PatchProgram::Source& source);
+  Result<dsp::WaveTables> wave_of(const std::string& name, const std::vector<int>& moved) const;
+  Result<dsp::WaveTables> cycles_of(const OscillatorSpec& oscillator) const;
+  Result<void> link_envelope(const std::string& name, const std::string& role,
+                             PatchProgram::Source& source) const;
+  Result<void> compile_envelopes();
+  Result<void> add_default_amp();
+  Result<void> compile_lfos();
+  Result<void> compile_maps();
+  Result<void> check_map(const MapSpec& map) const;
+  Result<void> compile_map(const MapSpec& map, std::size_t number);
+  Result<void> compile_rest();
+  Result<void> make_schedule();
+  void finish_flags();
+
+  /// The curve, or unknown_name with a suggestion. `role` is how messages call it.
+  Result<const curves::NurbsCurve*> curve(const std::string& name, const std::string& role) const;
+  /// The curve in a role where nothing may move it.
+  Result<const curves::NurbsCurve*> still_curve(const std::string& name,
+                                                const std::string& role) const;
+  std::vector<int> moved_numbers_of(const std::string& curve) const;
+  int envelope_index(const std::string& name) const;
+  Error about(Error error) const;
+  static Error in_role(Error error, const std::string& role);
+  void tell(std::string line);
+
+  const PatchSpec& spec_;
+  std::span<const WaveCycles> cycles_;
+  std::unique_ptr<PatchProgram> program_;
+  std::vector<MovedNumber> moved_;
+  std::map<std::string, std::shared_ptr<const dsp::WaveTables>> waves_;
+};
+
+}  // namespace knotwave::engine

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Events to voices: which message opens, moves and closes which voice. docs/engine.md has the table
+// of messages. All [audio] but the constructor.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "knotwave/engine/bank_program.h"
+#include "knotwave/engine/channel_state.h"
+#include "knotwave/engine/engine.h"
+#include "knotwave/engine/event.h"
+#include "knotwave/engine/mpe.h"
+#include "knotwave/engine/note_stack.h"
+
+#include "tempo_clock.h"
+#include "voice.h"
+#include "voice_slots.h"
+
+namespace knotwave::engine {
+
+inline constexpr int kChannels = 16;
+
+class Performance {
+ public:
+  explicit Performance(const EngineConfig& config);
+
+  void reset(const BankProgram* bank) KNOTWAVE_RT;
+  /// `time` is when the event is heard: its own time, or the present sample if that is later.
+  void handle(const Event& event, base::SampleTime time) KNOTWAVE_RT;
+
+  const ChannelState& channel(int c) const KNOTWAVE_RT {
+    return channels_[static_cast<std::size_t>(c)];
+  }
+  const BankProgram* bank() const KNOTWAVE_RT { return bank_; }
+  double master_gain() const KNOTWAVE_RT { return master_gain_; }  ///< universal master volume
+  const TempoClock& tempo() const KNOTWAVE_RT { return tempo_; }
+  VoiceSlots& slots() KNOTWAVE_RT { return slots_; }
+  const VoiceSlots& slots() const KNOTWAVE_RT { return slots_; }
+  Voice& voice(int index) KNOTWAVE_RT { return voices_[static_cast<std::size_t>(index)]; }
+  EngineCounters& counters() KNOTWAVE_RT { return counters_; }
+  const EngineCounters& counters() const KNOTWAVE_RT { return counters_; }
+
+  /// Frees voices that are done and counts the rest. Called when all are rendered up to a sample.
+  void collect() KNOTWAVE_RT;
+
+ private:
+  /// One channel's monophonic instrument.
+  struct Mono {
+    NoteStack stack;
+    int slot = -1;
+    const PatchProgram* patch = nullptr;
+  };
+
+  // performance.cpp: messages
+  void handle_midi(const base::MidiEvent& midi, base::SampleTime time) KNOTWAVE_RT;
+  void handle_system(const base::MidiEvent& midi, base::SampleTime time) KNOTWAVE_RT;
+  void handle_control(int channel, int controller, int value, base::SampleTime time) KNOTWAVE_RT;
+  void configure_mpe(int channel, int members, base::SampleTime time) KNOTWAVE_RT;
+  void reset_system(base::SampleTime time) KNOTWAVE_RT;
+  void update_pedals(int channel, base::SampleTime time) KNOTWAVE_RT;
+  void lift_keys(int channel, base::SampleTime time) KNOTWAVE_RT;
+  void silence(int channel, base::SampleTime time) KNOTWAVE_RT;
+  void release_everything(base::SampleTime time) KNOTWAVE_RT;
+  bool speaks_for(int channel, int other) const KNOTWAVE_RT {
+    return channel == other || zones_.master_of(other) == channel;
+  }
+  bool sustains(int channel) const KNOTWAVE_RT;
+  bool holds_sostenuto(int channel) const KNOTWAVE_RT;
+
+  // performance_notes.cpp: notes
+  void note_on(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT;
+  void note_off(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT;
+  void play_poly(int channel, int key, int velocity, const BankProgram::Choice& choice,
+                 base::SampleTime time) KNOTWAVE_RT;
+  void play_mono(int channel, int key, int velocity, const BankProgram::Choice& choice,
+                 base::SampleTime time) KNOTWAVE_RT;
+  /// The mono voice goes to the key that now has priority, or is released.
+  void settle_mono(int channel, base::SampleTime time, int release_velocity) KNOTWAVE_RT;
+  bool mono_sounds(const Mono& mono, int channel) const KNOTWAVE_RT;
+  int begin(int channel, const NoteContext& note, const BankProgram::Choice& choice,
+            base::SampleTime time, bool glides) KNOTWAVE_RT;
+  NoteContext context(int channel, int key, int velocity, const BankProgram::Choice& choice,
+                      std::uint32_t number) const KNOTWAVE_RT;
+  void release(int index, base::SampleTime time, int velocity) KNOTWAVE_RT;
+  void fade(int index, base::SampleTime time, double seconds) KNOTWAVE_RT;
+  void install(const BankProgram* bank, base::SampleTime time) KNOTWAVE_RT;
+  void carry_over(int index, const BankProgram* bank, base::SampleTime time) KNOTWAVE_RT;
+
+  const EngineConfig config_;
+  const BankProgram* bank_ = nullptr;
+  std::array<ChannelState, kChannels> channels_;
+  MpeZones zones_;
+  std::array<Mono, kChannels> monos_;
+  std::array<bool, kChannels> sustain_was_on_{}, sostenuto_was_on_{};
+  struct LastPitch {
+    bool known = false;
+    double semitones = 0;
+  };
+  std::array<LastPitch, kChannels> last_pitch_{};
+  TempoClock tempo_;
+  double master_gain_ = 1;
+  std::uint64_t next_note_ = 0;
+  VoiceSlots slots_;
+  std::vector<Voice> voices_;
+  std::vector<base::SampleTime> release_times_;  ///< when each voice's gate closed
+  EngineCounters counters_;
+};
+
+}  // namespace knotwave::engine

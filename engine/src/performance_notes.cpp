@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// Notes: which voice plays them, what is stolen, how a monophonic instrument moves between keys.
+#include "performance.h"
+
+namespace knotwave::engine {
+
+void Performance::note_on(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT {
+  const int master = zones_.master_of(channel);
+  const ChannelState& programs = channels_[static_cast<std::size_t>(master)];
+  const BankProgram::Choice choice =
+      bank_->choose(master, programs.bank_msb(), programs.bank_lsb(), programs.program(), key);
+  if (choice.patch == nullptr) return;
+  channels_[static_cast<std::size_t>(channel)].forget_poly_pressure(key);
+  ++counters_.notes;
+  Mono& mono = monos_[static_cast<std::size_t>(channel)];
+  const bool is_mono = choice.patch->spec().mode != PlayMode::poly;
+  if (mono.patch != nullptr && mono.patch != choice.patch) {  // the program changed under held keys
+    mono.stack.clear();
+    settle_mono(channel, time, 64);
+    mono.slot = -1;
+    mono.patch = nullptr;
+  }
+  if (is_mono) {
+    play_mono(channel, key, velocity, choice, time);
+  } else {
+    play_poly(channel, key, velocity, choice, time);
+  }
+}
+
+void Performance::note_off(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT {
+  Mono& mono = monos_[static_cast<std::size_t>(channel)];
+  if (mono.stack.lift(key, sustains(channel))) {
+    settle_mono(channel, time, velocity);
+    return;
+  }
+  const int index = slots_.oldest_down(channel, key);
+  if (index < 0) return;
+  VoiceSlot& slot = slots_.at(index);
+  slot.key_down = false;
+  slot.pedal_held = sustains(channel) || slot.sostenuto;
+  if (!slot.pedal_held) release(index, time, velocity);
+}
+
+void Performance::release(int index, base::SampleTime time, int velocity) KNOTWAVE_RT {
+  VoiceSlot& slot = slots_.at(index);
+  slot.key_down = slot.pedal_held = slot.sostenuto = false;
+  release_times_[static_cast<std::size_t>(index)] = time;
+  voice(index).release(time, velocity);
+}
+
+void Performance::fade(int index, base::SampleTime time, double seconds) KNOTWAVE_RT {
+  VoiceSlot& slot = slots_.at(index);
+  slot.key_down = slot.pedal_held = slot.sostenuto = false;
+  slot.state = VoiceSlot::State::fading;
+  voice(index).fade_out(base::first_sample(time), seconds);
+}
+
+NoteContext Performance::context(int channel, int key, int velocity,
+                                 const BankProgram::Choice& choice,
+                                 std::uint32_t number) const KNOTWAVE_RT {
+  NoteContext note;
+  note.channel = &channels_[static_cast<std::size_t>(channel)];
+  note.master = &channels_[static_cast<std::size_t>(zones_.master_of(channel))];
+  note.note = choice.note;
+  note.key = key;
+  note.velocity = velocity;
+  note.random = {choice.patch->spec().seed ^ config_.seed, number, base::kRandomMap};
+  return note;
+}
+
+int Performance::begin(int channel, const NoteContext& note, const BankProgram::Choice& choice,
+                       base::SampleTime time, bool glides) KNOTWAVE_RT {
+  const int index = slots_.free_place();
+  if (index < 0) {
+    ++counters_.notes_dropped;
+    return -1;
+  }
+  const int bus = zones_.master_of(channel);
+  int stolen = -1;
+  if (slots_.sounding_count(bus, choice.patch) >= choice.patch->spec().polyphony) {
+    stolen = slots_.victim(bus, choice.patch);
+  } else if (slots_.sounding_count() >= slots_.max_voices()) {
+    stolen = slots_.victim(bus, nullptr);
+  }
+  if (stolen >= 0) {
+    fade(stolen, time, kStealFadeSeconds);
+    ++counters_.voices_stolen;
+  }
+  VoiceSlot& slot = slots_.at(index);
+  slot = {};
+  slot.state = VoiceSlot::State::sounding;
+  slot.key_down = true;
+  slot.channel = channel;
+  slot.bus = bus;
+  slot.key = note.key;
+  slot.choke_group = choice.choke_group;
+  slot.patch = choice.patch;
+  slot.bank = bank_;
+  slot.age = next_note_;
+  Voice::Start start;
+  start.patch = choice.patch;
+  start.note = note;
+  start.time = time;
+  start.gain_lin = choice.gain_lin * bank_->gain_lin();
+  start.rate_hz = config_.rate_hz;
+  LastPitch& last = last_pitch_[static_cast<std::size_t>(channel)];
+  start.glides = glides && last.known && choice.patch->spec().glide_s > 0;
+  start.glide_from = last.semitones;
+  voice(index).start(start, tempo_);
+  last = {true, voice(index).pitch_target()};
+  counters_.voices_peak = std::max(counters_.voices_peak, slots_.sounding_count());
+  return index;
+}
+
+void Performance::play_poly(int channel, int key, int velocity, const BankProgram::Choice& choice,
+                            base::SampleTime time) KNOTWAVE_RT {
+  const bool is_member = zones_.is_member(channel);
+  for (int i = 0; i < static_cast<int>(slots_.all().size()); ++i) {
+    const VoiceSlot& slot = slots_.at(i);
+    if (!slot.is_sounding() || slot.channel != channel) continue;
+    if (choice.choke_group != 0 && slot.choke_group == choice.choke_group) {
+      fade(i, time, kStealFadeSeconds);
+    } else if (slot.key == key && slot.pedal_held && !slot.is_mono) {
+      release(i, time, 64);  // struck again: the pedal need not hold the old one as well
+    } else if (is_member && !slot.gate_is_open()) {
+      voice(i).detach();
+    }
+  }
+  const auto number = static_cast<std::uint32_t>(next_note_);
+  begin(channel, context(channel, key, velocity, choice, number), choice, time, true);
+  ++next_note_;
+}
+
+bool Performance::mono_sounds(const Mono& mono, int channel) const KNOTWAVE_RT {
+  if (mono.slot < 0) return false;
+  const VoiceSlot& slot = slots_.at(mono.slot);
+  return slot.is_sounding() && slot.is_mono && slot.channel == channel && slot.patch == mono.patch;
+}
+
+void Performance::play_mono(int channel, int key, int velocity, const BankProgram::Choice& choice,
+                            base::SampleTime time) KNOTWAVE_RT {
+  Mono& mono = monos_[static_cast<std::size_t>(channel)];
+  const PatchSpec& spec = choice.patch->spec();
+  mono.patch = choice.patch;
+  mono.stack.press(key, velocity);
+  const NoteStack::Entry* chosen = mono.stack.choose(spec.priority);
+  const bool sounds = mono_sounds(mono, channel);
+  if (sounds && chosen->key != key) return;  // an older key has priority
+  const auto number = static_cast<std::uint32_t>(next_note_++);
+  const NoteContext note = context(channel, key, velocity, choice, number);
+  if (!sounds) {
+    mono.slot = begin(channel, note, choice, time, spec.mode == PlayMode::mono);
+    if (mono.slot >= 0) slots_.at(mono.slot).is_mono = true;
+    return;
+  }
+  VoiceSlot& slot = slots_.at(mono.slot);
+  const bool tied = slot.gate_is_open();
+  const bool joins = spec.mode == PlayMode::mono || !tied;
+  const bool glides = spec.glide_s > 0 && (spec.mode == PlayMode::mono || tied);
+  slot.key = key;
+  slot.key_down = true;
+  voice(mono.slot).play(note, time, joins, glides, tempo_);
+  last_pitch_[static_cast<std::size_t>(channel)] = {true, voice(mono.slot).pitch_target()};
+}
+
+void Performance::settle_mono(int channel, base::SampleTime time,
+                              int release_velocity) KNOTWAVE_RT {
+  Mono& mono = monos_[static_cast<std::size_t>(channel)];
+  if (!mono_sounds(mono, channel)) return;
+  VoiceSlot& slot = slots_.at(mono.slot);
+  if (!slot.gate_is_open()) return;  // released already
+  const NoteStack::Entry* chosen = mono.stack.choose(mono.patch->spec().priority);
+  if (chosen == nullptr) {
+    release(mono.slot, time, release_velocity);
+    return;
+  }
+  slot.key_down = true;
+  if (chosen->key == slot.key) return;
+  const PatchSpec& spec = mono.patch->spec();
+  NoteContext note = voice(mono.slot).begun().note;
+  note.note += chosen->key - slot.key;
+  note.key = chosen->key;
+  note.velocity = chosen->velocity;
+  slot.key = chosen->key;
+  voice(mono.slot).play(note, time, spec.mode == PlayMode::mono, spec.glide_s > 0, tempo_);
+  last_pitch_[static_cast<std::size_t>(channel)] = {true, voice(mono.slot).pitch_target()};
+}
+
+void Performance::install(const BankProgram* bank, base::SampleTime time) KNOTWAVE_RT {
+  if (bank == nullptr || bank == bank_) return;
+  const int count = static_cast<int>(slots_.all().size());
+  bank_ = bank;
+  for (int i = 0; i < count; ++i) {
+    if (slots_.at(i).is_sounding() && slots_.at(i).bank != bank) carry_over(i, bank, time);
+  }
+}
+
+// The new voice is the same note, begun when the old one began, so that its envelopes stand where
+// they would: only its oscillators start afresh, under the crossfade.
+void Performance::carry_over(int index, const BankProgram* bank,
+                             base::SampleTime time) KNOTWAVE_RT {
+  const VoiceSlot old = slots_.at(index);
+  Voice::Start start = voice(index).begun();
+  fade(index, time, kInstallFadeSeconds);
+  Mono& mono = monos_[static_cast<std::size_t>(old.channel)];
+  const bool was_mono = old.is_mono && mono.slot == index;
+  if (was_mono) mono.slot = -1;
+  const ChannelState& programs = channels_[static_cast<std::size_t>(old.bus)];
+  const BankProgram::Choice choice =
+      bank->choose(old.bus, programs.bank_msb(), programs.bank_lsb(), programs.program(), old.key);
+  const int fresh = slots_.free_place();
+  if (choice.patch == nullptr) return;
+  if (fresh < 0) {
+    ++counters_.notes_dropped;
+    return;
+  }
+  start.patch = choice.patch;
+  start.gain_lin = choice.gain_lin * bank->gain_lin();
+  start.note.note = choice.note;
+  start.note.random.seed = choice.patch->spec().seed ^ config_.seed;
+  start.glides = false;
+  VoiceSlot& slot = slots_.at(fresh);
+  slot = old;
+  slot.patch = choice.patch;
+  slot.bank = bank;
+  slot.choke_group = choice.choke_group;
+  slot.is_mono = was_mono && choice.patch->spec().mode != PlayMode::poly;
+  voice(fresh).start(start, tempo_);
+  voice(fresh).fade_in(base::first_sample(time), kInstallFadeSeconds);
+  if (slot.is_mono) {
+    mono.slot = fresh;
+    mono.patch = choice.patch;
+  } else if (was_mono) {
+    const NoteStack::Entry* held = mono.stack.choose(mono.patch->spec().priority);
+    slot.key_down = held != nullptr && held->key_down;
+    slot.pedal_held = held != nullptr && !held->key_down;
+    mono.stack.clear();
+    mono.patch = nullptr;
+  }
+  release_times_[static_cast<std::size_t>(fresh)] = release_times_[static_cast<std::size_t>(index)];
+  if (!slot.gate_is_open()) {
+    voice(fresh).release(release_times_[static_cast<std::size_t>(index)],
+                         start.note.release_velocity);
+  }
+}
+
+}  // namespace knotwave::engine

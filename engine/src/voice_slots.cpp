@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "voice_slots.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace knotwave::engine {
+namespace {
+
+/// Smaller goes first.
+auto steal_order(const VoiceSlot& slot) KNOTWAVE_RT {
+  const int held = slot.key_down ? 2 : slot.pedal_held ? 1 : 0;
+  return std::tuple(held, held == 0 ? slot.level : 0.0, slot.age);
+}
+
+}  // namespace
+
+void VoiceSlots::clear() KNOTWAVE_RT { std::fill(slots_.begin(), slots_.end(), VoiceSlot{}); }
+
+int VoiceSlots::sounding_count() const KNOTWAVE_RT {
+  return static_cast<int>(std::count_if(slots_.begin(), slots_.end(),
+                                        [](const VoiceSlot& slot) { return slot.is_sounding(); }));
+}
+
+int VoiceSlots::sounding_count(int bus, const PatchProgram* patch) const KNOTWAVE_RT {
+  return static_cast<int>(std::count_if(slots_.begin(), slots_.end(), [&](const VoiceSlot& slot) {
+    return slot.is_sounding() && slot.bus == bus && slot.patch == patch;
+  }));
+}
+
+int VoiceSlots::free_place() const KNOTWAVE_RT {
+  const auto found = std::find_if(slots_.begin(), slots_.end(), [](const VoiceSlot& slot) {
+    return slot.state == VoiceSlot::State::free;
+  });
+  return found == slots_.end() ? -1 : static_cast<int>(found - slots_.begin());
+}
+
+bool VoiceSlots::bus_is_silent(int bus) const KNOTWAVE_RT {
+  return std::none_of(slots_.begin(), slots_.end(), [&](const VoiceSlot& slot) {
+    return slot.state != VoiceSlot::State::free && slot.bus == bus;
+  });
+}
+
+bool VoiceSlots::is_playing(const BankProgram* bank) const KNOTWAVE_RT {
+  return std::any_of(slots_.begin(), slots_.end(), [&](const VoiceSlot& slot) {
+    return slot.state != VoiceSlot::State::free && slot.bank == bank;
+  });
+}
+
+int VoiceSlots::victim(int bus, const PatchProgram* patch) const KNOTWAVE_RT {
+  int best = -1;
+  for (int i = 0; i < static_cast<int>(slots_.size()); ++i) {
+    const VoiceSlot& slot = at(i);
+    if (!slot.is_sounding()) continue;
+    if (patch != nullptr && (slot.patch != patch || slot.bus != bus)) continue;
+    if (best < 0 || steal_order(slot) < steal_order(at(best))) best = i;
+  }
+  return best;
+}
+
+int VoiceSlots::oldest_down(int channel, int key) const KNOTWAVE_RT {
+  int best = -1;
+  for (int i = 0; i < static_cast<int>(slots_.size()); ++i) {
+    const VoiceSlot& slot = at(i);
+    if (!slot.is_sounding() || slot.is_mono || !slot.key_down) continue;
+    if (slot.channel != channel || slot.key != key) continue;
+    if (best < 0 || slot.age < at(best).age) best = i;
+  }
+  return best;
+}
+
+}  // namespace knotwave::engine

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "workers.h"
+
+#include "knotwave/base/fp_state.h"
+
+namespace knotwave::engine {
+
+Workers::Workers(int threads) {
+  pool_.reserve(static_cast<std::size_t>(threads - 1));
+  for (int t = 1; t < threads; ++t) pool_.emplace_back([this, t] { serve(t); });
+}
+
+Workers::~Workers() {
+  stop_.store(true, std::memory_order_relaxed);
+  round_.fetch_add(1, std::memory_order_release);
+  round_.notify_all();
+  for (std::thread& thread : pool_) thread.join();
+}
+
+void Workers::run(Job job, void* context) noexcept {
+  job_ = job;
+  context_ = context;
+  still_working_.store(static_cast<std::uint32_t>(pool_.size()), std::memory_order_relaxed);
+  round_.fetch_add(1, std::memory_order_release);
+  round_.notify_all();
+  job(context, 0);
+  for (std::uint32_t left = still_working_.load(std::memory_order_acquire); left != 0;
+       left = still_working_.load(std::memory_order_acquire)) {
+    still_working_.wait(left, std::memory_order_acquire);
+  }
+}
+
+void Workers::serve(int thread) noexcept {
+  const base::FpStateGuard state;
+  std::uint32_t seen = 0;
+  for (;;) {
+    round_.wait(seen, std::memory_order_acquire);
+    seen = round_.load(std::memory_order_acquire);
+    if (stop_.load(std::memory_order_relaxed)) return;
+    job_(context_, thread);
+    if (still_working_.fetch_sub(1, std::memory_order_acq_rel) == 1) still_working_.notify_one();
+  }
+}
+
+}  // namespace knotwave::engine

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <utility>
+
+#include "demo.h"
+#include "event_feed.h"
+#include "render_job.h"
+
+namespace knotwave::render {
+namespace {
+
+std::string warning_text(const std::string& file, const std::string& what) {
+  return file + ": warning: " + what;
+}
+
+std::string warning_text(const std::string& file, const io::SongWarning& warning) {
+  return file + ": byte " + std::to_string(warning.offset) + ": warning: " + warning.message;
+}
+
+/// The cycles of every sound file the patches name, each read once.
+Result<std::vector<engine::WaveCycles>> read_waves(const engine::BankSpec& spec,
+                                                   std::vector<std::string>& warnings) {
+  std::vector<engine::WaveCycles> waves;
+  for (const engine::PatchSpec& patch : spec.patches) {
+    for (const engine::OscillatorSpec& oscillator : patch.oscillators) {
+      const std::string& file = oscillator.wave_file;
+      const bool is_read = std::any_of(waves.begin(), waves.end(),
+                                       [&](const auto& wave) { return wave.file == file; });
+      if (file.empty() || is_read) continue;
+      auto cycles = io::read_cycles(file, oscillator.wave_frame);
+      if (!cycles) return std::move(cycles).error();
+      for (const auto& warning : cycles->warnings) warnings.push_back(warning_text(file, warning));
+      waves.push_back({file, cycles->frame, cycles->rows, std::move(cycles->samples)});
+    }
+  }
+  return waves;
+}
+
+Result<void> read_bank(const std::string& path, RenderInput& input) {
+  const auto spec = engine::read_bank(path);
+  if (!spec) return spec.error();
+  const auto waves = read_waves(*spec, input.warnings);
+  if (!waves) return waves.error();
+  auto bank = engine::BankProgram::create(*spec, *waves);
+  if (!bank) return std::move(bank).error();
+  input.bank = std::move(bank).value();
+  return {};
+}
+
+Result<void> read_score(const std::string& path, RenderInput& input) {
+  auto song = io::read_midi_file(path);
+  if (!song) return std::move(song).error();
+  input.song = std::move(song).value();
+  const std::string& name = input.score_name;
+  for (const auto& warning : input.song.warnings) {
+    input.warnings.push_back(warning_text(name, warning));
+  }
+  if (input.song.warnings_left_out > 0) {
+    input.warnings.push_back(warning_text(
+        name, std::to_string(input.song.warnings_left_out) + " more warnings are left out"));
+  }
+  return {};
+}
+
+// The score first: it is read in an instant, compiling a bank may take a while.
+Result<RenderInput> read_files(const std::string& patch, const std::string& score,
+                               const std::string& score_name) {
+  RenderInput input;
+  input.score_name = score_name;
+  if (auto good = read_score(score, input); !good) return good.error();
+  if (auto good = read_bank(patch, input); !good) return good.error();
+  return input;
+}
+
+}  // namespace
+
+Result<RenderInput> read_input(const RenderOptions& options) {
+  if (options.demo.empty()) return read_files(options.patch, options.score, options.score);
+  const auto demo = DemoFiles::unpack(options.demo);
+  if (!demo) return demo.error();
+  return read_files(demo->patch(), demo->score(), options.demo);
+}
+
+std::string check_line(const RenderOptions& options, const RenderInput& input) {
+  const EventFeed feed(input.song, options.rate_hz);
+  const double seconds = static_cast<double>(feed.end().sample) / options.rate_hz;
+  std::string line = input.score_name + ": ok: " + std::to_string(input.song.track_count) +
+                     " tracks, " + std::to_string(input.song.events.size()) + " events, " +
+                     fixed(seconds, 3) + " s";
+  if (seconds > options.max_length_s) line += "; --max-length would refuse to render it";
+  return io::printable(line, 4096);
+}
+
+}  // namespace knotwave::render

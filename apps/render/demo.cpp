@@ -5,10 +5,10 @@
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
-#include "knotwave/base/file.h"
 #include "knotwave/base/suggest.h"
 
 namespace knotwave::render {
@@ -36,8 +36,12 @@ Result<void> write_below(const fs::path& folder, const EmbeddedFile& file) {
   std::error_code code;
   fs::create_directories(path.parent_path(), code);
   if (code) return fail(ErrorCode::io_failed, path.string() + ": " + code.message());
-  return base::write_file(path.string(),
-                          {reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()});
+  // Not base::write_file(): these files need not outlive a power cut, and syncing them takes time.
+  std::ofstream out(path, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(file.bytes.data()),
+            static_cast<std::streamsize>(file.bytes.size()));
+  if (!out.flush()) return fail(ErrorCode::io_failed, "cannot write '" + path.string() + "'");
+  return {};
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ Error unknown_demo(const std::string& name);
 /// other by path.
 class DemoFiles {
  public:
-  /// Errors: unknown_name, io_failed, disk_full.
+  /// Errors: unknown_name, io_failed.
   static Result<DemoFiles> unpack(const std::string& name);
   DemoFiles(DemoFiles&& other) noexcept;
   DemoFiles& operator=(DemoFiles&&) = delete;

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "knotwave/curves/compile.h"
 
+#include <algorithm>
 #include <string>
 
 #include "compile_parts.h"
+#include "time_inversion.h"
 
 namespace knotwave::curves {
 namespace {
 
-/// Looks a span when the pieces are exact and only rounding is to be measured.
-constexpr int kExactLooks = 5;
+/// Looks a piece at NurbsCurve::evaluate once the pieces are made.
+constexpr int kLooks = 5;
 
 Result<void> check_options(const NurbsCurve& curve, const CompileOptions& options) {
   if (!(options.max_error > 0) || options.max_pieces < 1) {
@@ -17,46 +19,64 @@ Result<void> check_options(const NurbsCurve& curve, const CompileOptions& option
                 "curve '" + curve.name() + "': max_error and max_pieces must be above 0");
   }
   if (auto widths = check_widths(curve); !widths) return widths;
-  if (!options.controls.empty() && curve.degree() > kMaxPieceDegree) {
-    return fail(ErrorCode::unsupported, "curve '" + curve.name() +
-                                            "': controls need degree 1..7, this curve has degree " +
-                                            std::to_string(curve.degree()));
-  }
   return check_controls(curve, options.controls);
 }
 
-Result<CurveProgram> finish_exact(const NurbsCurve& curve, const CompileOptions& options) {
-  auto parts = exact_parts(curve, options.controls);
-  if (!parts) return parts.error();
-  if (static_cast<int>(parts->pieces()) > options.max_pieces) {
+Error no_controls(const NurbsCurve& curve, const std::string& why) {
+  return fail(ErrorCode::unsupported, "curve '" + curve.name() + "': no controls " + why);
+}
+
+/// The program of finished pieces, its error against the curve measured once more by
+/// NurbsCurve::evaluate, which knows nothing of pieces.
+Result<CurveProgram> checked_program(const NurbsCurve& curve, ProgramParts parts,
+                                     const CompileOptions& options) {
+  if (static_cast<int>(parts.pieces()) > options.max_pieces) {
     return fail(ErrorCode::error_bound_missed,
-                "curve '" + curve.name() + "' has " + std::to_string(parts->pieces()) + " spans, " +
+                "curve '" + curve.name() + "' has " + std::to_string(parts.pieces()) + " spans, " +
                     std::to_string(options.max_pieces) + " pieces are allowed");
   }
-  CurveProgram program = ProgramBuilder::build(std::move(*parts));
-  const auto error = measured_error(program, curve, options.controls, kExactLooks);
+  const double fit_error = parts.max_error;
+  CurveProgram program = ProgramBuilder::build(std::move(parts));
+  const auto error = measured_error(program, curve, options.controls, kLooks);
   if (!error) return error.error();
   if (!(*error <= options.max_error)) {
     return missed_bound(curve, *error, options.max_error,
                         "this is rounding; weights or points are too far apart");
   }
-  ProgramBuilder::set_max_error(program, *error);
+  ProgramBuilder::set_max_error(program, std::max(*error, fit_error));
   return program;
+}
+
+Result<CurveProgram> fitted_program(const NurbsCurve& curve, const CompileOptions& options) {
+  auto parts = fitted_parts(curve, options);
+  if (!parts) return parts.error();
+  return checked_program(curve, std::move(*parts), options);
+}
+
+Result<CurveProgram> exact_program(const NurbsCurve& curve, const CompileOptions& options) {
+  return checked_program(curve, exact_parts(curve, options.controls), options);
 }
 
 }  // namespace
 
 Result<CurveProgram> compile_parametric(const NurbsCurve& curve, const CompileOptions& options) {
   if (auto checked = check_options(curve, options); !checked) return checked.error();
-  if (curve.degree() > kMaxPieceDegree) {
-    return fail(ErrorCode::unsupported, "degree > 7");
-  }
-  return finish_exact(curve, options);
+  if (curve.degree() <= kMaxPieceDegree) return exact_program(curve, options);
+  if (options.controls.empty()) return fitted_program(curve, options);
+  return no_controls(curve, "above degree " + std::to_string(kMaxPieceDegree) +
+                                ", this curve has degree " + std::to_string(curve.degree()));
 }
 
 Result<CurveProgram> compile_polynomial(const NurbsCurve& curve, const CompileOptions& options) {
-  if (curve.is_rational()) return fail(ErrorCode::unsupported, "rational");
-  return compile_parametric(curve, options);
+  if (auto checked = check_options(curve, options); !checked) return checked.error();
+  const bool moves_weight =
+      std::any_of(options.controls.begin(), options.controls.end(),
+                  [](const ControlRange& c) { return c.kind == ControlRange::Kind::weight; });
+  if (!curve.is_rational() && curve.degree() <= kMaxPieceDegree && !moves_weight) {
+    return exact_program(curve, options);
+  }
+  if (options.controls.empty()) return fitted_program(curve, options);
+  return no_controls(curve, "where weights or a degree above 7 are made polynomial");
 }
 
 Result<CurveProgram> compile_function(const NurbsCurve& curve, const CompileOptions& options) {
@@ -66,7 +86,9 @@ Result<CurveProgram> compile_function(const NurbsCurve& curve, const CompileOpti
                                            " coordinates; a function has 1, or 2 with time first");
   }
   if (curve.dim() == 1) return compile_parametric(curve, options);
-  return fail(ErrorCode::unsupported, "2-D");
+  if (auto checked = check_options(curve, options); !checked) return checked.error();
+  if (!options.controls.empty()) return no_controls(curve, "on a curve with a time coordinate");
+  return compile_timed(curve, options);
 }
 
 }  // namespace knotwave::curves

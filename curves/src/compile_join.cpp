@@ -1,52 +1,64 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <cmath>
 
+#include "knotwave/base/document.h"
 #include "knotwave/curves/compile.h"
 
 #include "compile_parts.h"
 #include "grid_kernel.h"
+#include "time_inversion.h"
 
 namespace knotwave::curves {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// The curve (R0, R1): control points (1, 0), (0, 1) and then (0, 0), with the section's weights.
+/// The curve (R0, R1) of a 1-D section, (x, R0, R1) of a 2-D one: control points (1, 0), (0, 1) and
+/// then (0, 0), with the section's weights.
 Result<NurbsCurve> basis_curve(const NurbsCurve& section) {
   CurveSpec spec = section.spec();
-  spec.dim = 2;
-  spec.points.assign(at(section.point_count()) * 2, 0.0);
-  spec.points[0] = 1.0;
-  spec.points[3] = 1.0;
+  const int time = section.dim() - 1;  // coordinates before R0
+  spec.dim = time + 2;
+  spec.points.assign(at(section.point_count() * spec.dim), 0.0);
+  for (int i = 0; i < section.point_count(); ++i) {
+    if (time == 1) spec.points[at(i * spec.dim)] = section.points()[at(i * 2)];
+    if (i < 2) spec.points[at(i * spec.dim + time + i)] = 1.0;
+  }
   return NurbsCurve::create(std::move(spec));
 }
 
-/// Join of a 1-D curve at u.
-Result<JoinProgram> join_at(const NurbsCurve& curve, double u_join, CompileOptions options) {
-  const auto section = sub_curve(curve, u_join, curve.u_max());
-  if (!section) return section.error();
-  const auto basis = basis_curve(*section);
-  if (!basis) return basis.error();
-  const HullRange hull = hull_over(curve, 0, options.controls);
-  options.controls.clear();
-  auto program = compile_parametric(*basis, options);
-  if (!program) return program.error();
+/// The part of a curve from a join on; in a 2-D one from the time of the join, exactly.
+Result<NurbsCurve> section_from(const NurbsCurve& curve, double u_join) {
+  if (curve.dim() == 1) return sub_curve(curve, u_join, curve.u_max());
+  double first[2], last[2];
+  curve.evaluate(curve.u_min(), first);
+  curve.evaluate(curve.u_max(), last);
+  if (!(u_join >= first[0] && u_join < last[0])) {
+    return fail(ErrorCode::parameter_out_of_range,
+                "curve '" + curve.name() + "': a join at x = " + base::number_text(u_join) +
+                    " is not inside " + base::number_text(first[0]) + ".." +
+                    base::number_text(last[0]));
+  }
+  auto section = sub_curve(curve, parameter_at_time(curve, u_join), curve.u_max());
+  if (!section) return section;
+  CurveSpec spec = section->spec();
+  spec.points[0] = u_join;
+  return NurbsCurve::create(std::move(spec));
+}
 
-  const int p = section->degree();
-  const auto knots = section->knots();
-  const auto weights = section->weights();
-  JoinProgram join;
-  join.u_join = u_join;
-  join.basis = std::move(*program);
-  join.u_basis_end = knots[at(std::min(p + 2, section->point_count()))];
-  join.p0 = section->points()[0];
-  join.p1 = section->points()[1];
-  join.slope_factor = p * (weights[1] / weights[0]) / (knots[at(p) + 1] - knots[1]);
-  join.low = hull.low;
-  join.high = hull.high;
-  join.moves_p1 = p > 1;
-  return join;
+/// From here on both bases are 0: the start of the last pieces without any coefficient.
+double end_of(const CurveProgram& basis) {
+  int piece = basis.piece_count();
+  const auto is_zero = [&](int i) {
+    for (int c = 0; c < 2; ++c) {
+      for (const double x : basis.coefficients(i, c)) {
+        if (x != 0) return false;
+      }
+    }
+    return true;
+  };
+  while (piece > 0 && is_zero(piece - 1)) --piece;
+  return basis.breaks()[at(piece)];
 }
 
 }  // namespace
@@ -58,11 +70,13 @@ JoinProgram::Deltas JoinProgram::join(double value0, double slope0) const KNOTWA
 JoinProgram::Deltas JoinProgram::join_from(double program_value, double program_slope,
                                            double value0, double slope0) const KNOTWAVE_RT {
   Deltas deltas = join_c0_from(program_value, value0);
+  deltas.limited = !moves_p1;
+  if (!moves_p1) return deltas;
   const double present = program_value + program_slope / slope_factor;
   const double wanted = (program_value + deltas.dp0) + slope0 / slope_factor;
   const double allowed = clamp_to_hull(wanted, low, high);
-  deltas.limited = !moves_p1 || !(allowed == wanted);
-  if (moves_p1 && wanted == wanted && present == present) deltas.dp1 = allowed - present;
+  deltas.limited = !(allowed == wanted);
+  if (wanted == wanted && present == present) deltas.dp1 = allowed - present;
   return deltas;
 }
 
@@ -80,14 +94,44 @@ JoinProgram::Deltas JoinProgram::join_c0_from(double program_value,
 
 Result<JoinProgram> compile_join(const NurbsCurve& curve, double u_join,
                                  const CompileOptions& options) {
-  if (curve.degree() > kMaxPieceDegree) {
-    return fail(ErrorCode::unsupported, "curve '" + curve.name() + "' has degree " +
-                                            std::to_string(curve.degree()) +
-                                            ", joins are for degree 1..7");
+  if (curve.degree() > kMaxPieceDegree || curve.dim() > 2) {
+    return fail(ErrorCode::unsupported,
+                "curve '" + curve.name() +
+                    "': joins are for degree 1..7 and 1 or 2 coordinates, not " +
+                    std::to_string(curve.degree()) + " and " + std::to_string(curve.dim()));
   }
   if (auto checked = check_controls(curve, options.controls); !checked) return checked.error();
-  if (curve.dim() == 1) return join_at(curve, u_join, options);
-  return fail(ErrorCode::unsupported, "2-D");
+  const bool timed = curve.dim() == 2;
+  if (timed && !is_non_decreasing(curve)) return compile_function(curve, options).error();
+  const auto section = section_from(curve, u_join);
+  if (!section) return section.error();
+  const auto basis = basis_curve(*section);
+  if (!basis) return basis.error();
+  CompileOptions basis_options = options;
+  basis_options.controls.clear();
+  auto program =
+      timed ? compile_timed(*basis, basis_options) : compile_parametric(*basis, basis_options);
+  if (!program) return program.error();
+
+  const HullRange hull = hull_over(curve, curve.dim() - 1, options.controls);
+  const auto points = section->points();
+  const int p = section->degree();
+  JoinProgram join;
+  join.u_join = u_join;
+  join.basis = std::move(*program);
+  join.u_basis_end = end_of(join.basis);
+  join.p0 = points[timed ? 1 : 0];
+  join.p1 = points[timed ? 3 : 1];
+  // Per unit of u: p w1 / w0 over the knot difference. Per unit of time, over dx/du of the same
+  // kind.
+  const double by = timed ? points[2] - points[0]
+                          : (section->knots()[at(p) + 1] - section->knots()[1]) /
+                                (p * (section->weights()[1] / section->weights()[0]));
+  join.moves_p1 = p > 1 && by > 1e-12 * (join.basis.u_max() - u_join);  // else a vertical start
+  join.slope_factor = join.moves_p1 ? 1 / by : 0;
+  join.low = hull.low;
+  join.high = hull.high;
+  return join;
 }
 
 }  // namespace knotwave::curves

@@ -6,6 +6,8 @@
 
 #include "knotwave/base/document.h"
 
+#include "piece_fit.h"
+
 namespace knotwave::curves {
 namespace {
 
@@ -102,8 +104,7 @@ ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& 
   return parts;
 }
 
-Result<ProgramParts> exact_parts(const NurbsCurve& curve,
-                                 const std::vector<ControlRange>& controls) {
+ProgramParts exact_parts(const NurbsCurve& curve, const std::vector<ControlRange>& controls) {
   ProgramParts parts = frame_of(curve, controls);
   const auto is_weight = [](const ControlRange& c) { return c.kind == ControlRange::Kind::weight; };
   parts.degree = curve.degree();
@@ -116,6 +117,24 @@ Result<ProgramParts> exact_parts(const NurbsCurve& curve,
   for (std::size_t k = 0; k < controls.size(); ++k) {
     place_term(parts, span_polynomials(control_term(curve, controls[k])), k + 1);
   }
+  return parts;
+}
+
+Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions& options) {
+  ProgramParts parts = frame_of(curve, {});
+  const FitLimits limits{options.max_error, options.max_pieces, parts.low, parts.high};
+  FittedPieces pieces;
+  for (const SpanPolynomial& span : span_polynomials(HomogeneousCurve(curve))) {
+    const DoubleDouble width = DoubleDouble::difference(span.u1, span.u0);
+    const FitTarget target = [&](DoubleDouble u, std::span<DoubleDouble> out) {
+      const DoubleDouble t = (u - DoubleDouble(span.u0)) / width;
+      for (int c = 0; c < span.dim; ++c) out[at(c)] = coordinate_at(span, c, t);
+    };
+    if (!fit_pieces(target, span.u0, span.u1, limits, pieces)) {
+      return too_many_pieces(curve, pieces.max_error, options);
+    }
+  }
+  pieces.lay_out(parts);
   return parts;
 }
 
@@ -136,6 +155,11 @@ Error missed_bound(const NurbsCurve& curve, double error, double asked, const st
   return fail(ErrorCode::error_bound_missed, "curve '" + curve.name() + "': the program is " +
                                                  base::number_text(error) + " from the curve, " +
                                                  base::number_text(asked) + " was asked: " + why);
+}
+
+Error too_many_pieces(const NurbsCurve& curve, double error, const CompileOptions& options) {
+  return missed_bound(curve, error, options.max_error,
+                      std::to_string(options.max_pieces) + " pieces are not enough");
 }
 
 }  // namespace knotwave::curves

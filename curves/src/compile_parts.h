@@ -12,8 +12,10 @@
 namespace knotwave::curves {
 
 /// Every span of the curve as it is: no error but rounding. Degree <= kMaxPieceDegree.
-Result<ProgramParts> exact_parts(const NurbsCurve& curve,
-                                 const std::vector<ControlRange>& controls);
+ProgramParts exact_parts(const NurbsCurve& curve, const std::vector<ControlRange>& controls);
+
+/// Every span within max_error by polynomial pieces: for rational spans and high degrees.
+Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions& options);
 
 /// Hull, controls, period, and the values at clamped ends: all but the pieces.
 ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& controls);
@@ -26,7 +28,9 @@ Result<void> check_widths(const NurbsCurve& curve);
 Result<double> measured_error(const CurveProgram& program, const NurbsCurve& curve,
                               const std::vector<ControlRange>& controls, int looks);
 
-/// Largest absolute coordinate of the hull: what errors are compared with.
+/// error_bound_missed, with both numbers.
 Error missed_bound(const NurbsCurve& curve, double error, double asked, const std::string& why);
+/// The same where max_pieces stopped the fit.
+Error too_many_pieces(const NurbsCurve& curve, double error, const CompileOptions& options);
 
 }  // namespace knotwave::curves

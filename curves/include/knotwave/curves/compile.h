@@ -54,9 +54,10 @@ struct JoinProgram {
   CurveProgram basis;        ///< dim 2: basis0, basis1, over [u_join, u_end]
   double u_basis_end = 0;    ///< from here on both are 0
   double p0 = 0, p1 = 0;     ///< first two control points of the section
-  double slope_factor = 1;   ///< slope at u_join by u = slope_factor * (p1 - p0)
+  double slope_factor = 1;   ///< slope at u_join by u = slope_factor * (p1 - p0); 0: see moves_p1
   double low = 0, high = 1;  ///< hull that p1 is limited to
-  bool moves_p1 = true;      ///< false for degree 1: p1 is a corner there, joins are C0
+  bool moves_p1 = true;      ///< false for degree 1, where p1 is a corner, and where a 2-D curve
+                             ///< begins vertically: joins are C0 then, and slope_factor is 0
 
   struct Deltas {
     double dp0 = 0;

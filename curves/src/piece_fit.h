@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Any smooth function as polynomial pieces of degree kMaxPieceDegree, by bisection until the
+// measured error is small enough. Private to curves. [control]
+#pragma once
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "knotwave/base/result.h"
+
+#include "double_double.h"
+#include "program_builder.h"
+
+namespace knotwave::curves {
+
+/// What pieces are fitted to: all outputs at u, right to well below the asked error.
+using FitTarget = std::function<void(DoubleDouble u, std::span<DoubleDouble> out)>;
+
+struct FitLimits {
+  double max_error = 1e-7;
+  int max_pieces = 4096;
+  std::vector<double> low, high;  ///< hull, one pair an output: pieces are compared clamped
+};
+
+/// Pieces after one another, and how far they are from the target.
+struct FittedPieces {
+  int outputs = 1;
+  std::vector<double> breaks;        ///< [pieces + 1]
+  std::vector<double> coefficients;  ///< [pieces * outputs * (kMaxPieceDegree + 1)]
+  double max_error = 0;
+
+  int count() const { return breaks.empty() ? 0 : static_cast<int>(breaks.size()) - 1; }
+  /// One piece of any degree up to kMaxPieceDegree; breaks must go on from the last one.
+  void add(double u_a, double u_b, std::span<const double> piece);
+  /// Breaks, coefficients, degree (the highest power any piece uses) and error.
+  void lay_out(ProgramParts& parts) const;
+};
+
+/// Appends pieces of `target` over [u_a, u_b]; neighbours share the value at their break to the
+/// bit. A piece between two neighbouring doubles is taken as it is: no u lies inside it. False when
+/// max_pieces are not enough; max_error is then the error of the piece that failed.
+bool fit_pieces(const FitTarget& target, double u_a, double u_b, const FitLimits& limits,
+                FittedPieces& pieces);
+
+}  // namespace knotwave::curves

@@ -134,6 +134,9 @@ Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions&
       return too_many_pieces(curve, pieces.max_error, options);
     }
   }
+  if (!(pieces.max_error <= options.max_error)) {
+    return missed_bound(curve, pieces.max_error, options.max_error, "this is rounding");
+  }
   pieces.lay_out(parts);
   return parts;
 }

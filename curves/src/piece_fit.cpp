@@ -45,6 +45,7 @@ struct Piece {
   double u_a = 0;
   double u_b = 0;
   std::vector<double> coefficients;  // [outputs * kNodes]
+  std::vector<double> right;         // value at u_b
 };
 
 /// Powers of t of the polynomial through (kNode[i], y[i]): Newton's divided differences, expanded
@@ -70,17 +71,19 @@ class Fitter {
   Fitter(const FitTarget& target, const FitLimits& limits)
       : target_(target), limits_(limits), outputs_(limits.low.size()), values_(outputs_) {}
 
-  Piece fit(double u_a, double u_b) {
-    Piece piece{u_a, u_b, std::vector<double>(outputs_ * kNodes)};
+  /// `left` [outputs] is the value at u_a, or empty.
+  Piece fit(double u_a, double u_b, std::span<const double> left) {
+    Piece piece{u_a, u_b, std::vector<double>(outputs_ * kNodes), {}};
     std::vector<DoubleDouble> y(outputs_ * kNodes);
     const DoubleDouble width = DoubleDouble::difference(u_b, u_a);
     for (int i = 0; i < kNodes; ++i) {
       // The last node is u_b itself, so that neighbours agree.
       target_(i == kDegree ? DoubleDouble(u_b) : DoubleDouble(u_a) + width * DoubleDouble(kNode[i]),
               values_);
-      const bool end = i == 0 || i == kDegree;
       for (std::size_t c = 0; c < outputs_; ++c) {
-        y[c * kNodes + at(i)] = end ? DoubleDouble(values_[c].hi) : values_[c];
+        if (i == 0 && !left.empty()) values_[c] = left[c];
+        if (i == kDegree) piece.right.push_back(values_[c].hi);
+        y[c * kNodes + at(i)] = values_[c];
       }
     }
     for (std::size_t c = 0; c < outputs_; ++c) {
@@ -90,12 +93,14 @@ class Fitter {
     return piece;
   }
 
-  /// Largest error at the looks, each of which is a double in [u_a, u_b).
+  /// Largest error at the looks, each of which is a double in [u_a, u_b); no further than one that
+  /// is too large.
   double error(const Piece& piece) {
     double worst = 0;
     const double width = piece.u_b - piece.u_a;
     const auto look = [&](double u) {
-      if (u >= piece.u_a && u < piece.u_b) worst = std::max(worst, error_at(piece, u));
+      if (worst > kAccepted * limits_.max_error || !(u >= piece.u_a && u < piece.u_b)) return;
+      worst = std::max(worst, error_at(piece, u));
     };
     look(next_up(piece.u_a));
     for (int i = 0; i < kDegree; ++i) {
@@ -133,6 +138,7 @@ void FittedPieces::add(double u_a, double u_b, std::span<const double> piece) {
   if (breaks.empty()) breaks.push_back(u_a);
   breaks.push_back(u_b);
   coefficients.insert(coefficients.end(), piece.begin(), piece.end());
+  right.clear();
 }
 
 void FittedPieces::lay_out(ProgramParts& parts) const {
@@ -163,7 +169,7 @@ bool fit_pieces(const FitTarget& target, double u_a, double u_b, const FitLimits
       pieces.max_error = error;
       return false;
     }
-    const Piece piece = fitter.fit(u_a, ends.back());
+    const Piece piece = fitter.fit(u_a, ends.back(), pieces.right);
     error = fitter.error(piece);
     const double middle = piece.u_a + 0.5 * (piece.u_b - piece.u_a);
     if (error > kAccepted * limits.max_error && middle > piece.u_a && middle < piece.u_b) {
@@ -171,6 +177,7 @@ bool fit_pieces(const FitTarget& target, double u_a, double u_b, const FitLimits
       continue;
     }
     pieces.add(piece.u_a, piece.u_b, piece.coefficients);
+    pieces.right = piece.right;
     pieces.max_error = std::max(pieces.max_error, kBetweenLooks * error);
     u_a = ends.back();
     ends.pop_back();

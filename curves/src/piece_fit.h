@@ -27,6 +27,8 @@ struct FittedPieces {
   int outputs = 1;
   std::vector<double> breaks;        ///< [pieces + 1]
   std::vector<double> coefficients;  ///< [pieces * outputs * (kMaxPieceDegree + 1)]
+  std::vector<double> right;  ///< value at the last break, where the next piece begins; empty: at
+                              ///< the target's own value there
   double max_error = 0;
 
   int count() const { return breaks.empty() ? 0 : static_cast<int>(breaks.size()) - 1; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "span_polynomial.h"
 
+#include <algorithm>
+
 namespace knotwave::curves {
 namespace {
 
@@ -30,7 +32,7 @@ std::vector<SpanPolynomial> span_polynomials(const HomogeneousCurve& curve) {
     const double u1 = curve.knots[at(i) + 1];
     if (!(u0 < u1)) continue;
     bezier_points(curve, i, points);
-    SpanPolynomial span{u0, u1, p, curve.dim, {}};
+    SpanPolynomial span{u0, u1, p, curve.dim, true, {}};
     span.rows.resize(at((curve.dim + 1) * (p + 1)));
     for (int c = 0; c <= curve.dim; ++c) {
       for (int r = 0; r <= p; ++r) {
@@ -38,6 +40,9 @@ std::vector<SpanPolynomial> span_polynomials(const HomogeneousCurve& curve) {
       }
       to_powers(bernstein, std::span(span.rows).subspan(at(c * (p + 1)), at(p + 1)));
     }
+    const auto weight = span.row(curve.dim);
+    span.has_weights = weight[0].hi != 1 || std::any_of(weight.begin() + 1, weight.end(),
+                                                        [](DoubleDouble w) { return w.hi != 0; });
     spans.push_back(std::move(span));
   }
   return spans;
@@ -58,7 +63,8 @@ DoubleDouble polynomial_slope_at(std::span<const DoubleDouble> c, DoubleDouble t
 }
 
 DoubleDouble coordinate_at(const SpanPolynomial& span, int coordinate, DoubleDouble t) noexcept {
-  return polynomial_at(span.row(coordinate), t) / polynomial_at(span.row(span.dim), t);
+  const DoubleDouble value = polynomial_at(span.row(coordinate), t);
+  return span.has_weights ? value / polynomial_at(span.row(span.dim), t) : value;
 }
 
 }  // namespace knotwave::curves

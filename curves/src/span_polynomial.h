@@ -16,6 +16,7 @@ struct SpanPolynomial {
   double u1 = 1;
   int degree = 0;
   int dim = 0;
+  bool has_weights = true;         ///< false where the weight is 1 all along
   std::vector<DoubleDouble> rows;  ///< [(dim + 1) * (degree + 1)], row dim is the weight
 
   std::span<const DoubleDouble> row(int index) const {

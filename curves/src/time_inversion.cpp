@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "knotwave/base/document.h"
 
@@ -15,53 +16,85 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Where a span's time is x: the root of N(t) - x D(t), which never falls on [0, 1]. Newton inside
 /// a bracket; at a vertical tangent the root is multiple and halving the bracket takes over.
+/// Doubles come near, double-double steps do the rest.
 class SpanClock {
  public:
-  explicit SpanClock(const SpanPolynomial& span) : span_(&span), c_(span.row(0).size()) {}
+  explicit SpanClock(const SpanPolynomial& span)
+      : span_(&span), c_(span.row(0).size()), near_(c_.size()) {}
 
   /// t in [0, 1]; times outside the span give its ends. Remembers t as the next first guess.
   DoubleDouble parameter_at(DoubleDouble x) {
     const auto time = span_->row(0);
     const auto weight = span_->row(span_->dim);
     DoubleDouble end = 0.0;
-    for (std::size_t k = 0; k < c_.size(); ++k) end += c_[k] = time[k] - x * weight[k];
+    for (std::size_t k = 0; k < c_.size(); ++k) {
+      c_[k] = weight[k].hi == 0 ? time[k] : time[k] - x * weight[k];
+      near_[k] = c_[k].hi;
+      end += c_[k];
+    }
     if (c_[0].hi >= 0) return 0.0;
     if (end.hi <= 0) return 1.0;
-    return t_ = root();
+    const double guess = root(std::span<const double>(near_), t_.hi);
+    t_ = root(std::span<const DoubleDouble>(c_), DoubleDouble(guess));
+    return t_;
   }
 
  private:
   static constexpr int kMaxSteps = 200;
 
-  DoubleDouble root() const {
-    DoubleDouble low = 0.0, high = 1.0, t = t_;
+  static double leading(double x) { return x; }
+  static double leading(DoubleDouble x) { return x.hi; }
+  static double value(std::span<const double> c, double t) {
+    double sum = c.back();
+    for (std::size_t k = c.size() - 1; k-- > 0;) sum = sum * t + c[k];
+    return sum;
+  }
+  static DoubleDouble value(std::span<const DoubleDouble> c, DoubleDouble t) {
+    return polynomial_at(c, t);
+  }
+
+  /// The slope only steers, so doubles do.
+  double slope(double t) const {
+    double sum = 0;
+    for (std::size_t k = near_.size() - 1; k > 0; --k) sum = sum * t + near_[k] * double(k);
+    return sum;
+  }
+
+  template <class Real>
+  Real root(std::span<const Real> c, Real t) const {
+    Real low = 0.0, high = 1.0;
     double before = 1;  // size of the last step
-    bool last = false;
+    bool close = false;
     for (int step = 0; step < kMaxSteps; ++step) {
-      const DoubleDouble f = polynomial_at(c_, t);
-      if (f.hi == 0) return t;
-      (f.hi > 0 ? high : low) = t;
-      const DoubleDouble by = f / polynomial_slope_at(c_, t);
-      DoubleDouble next = t - by;
-      const double size = std::abs(by.hi);
+      const Real f = value(c, t);
+      if (leading(f) == 0) return t;
+      (leading(f) > 0 ? high : low) = t;
+      const Real by = leading(f) / slope(leading(t));
+      Real next = t - by;
+      const double size = std::abs(leading(by));
+      const bool inside = leading(next - low) > 0 && leading(high - next) > 0;
+      if (close) return inside ? next : t;
       // Out of the bracket, not a number, or not closing in: halve.
-      const bool inside = (next - low).hi > 0 && (high - next).hi > 0;
-      if (last) return inside ? next : t;
       if (!inside || (size > 0.75 * before && step > 2)) {
-        next = (low + high) * DoubleDouble(0.5);
-        before = (high - low).hi;
-        if (!(before > 1e-30 * t.hi)) return t;
+        next = (low + high) * Real(0.5);
+        before = leading(high - low);
+        if (!(before > 1e-30 * leading(t))) return t;
       } else {
         before = size;
+        close = size <= kClose<Real> * leading(t);
       }
       t = next;
-      last = inside && size <= 1e-12 * t.hi;  // one more step squares this
     }
     return t;
   }
 
+  /// Once a step is this small against t, one more makes it negligible.
+  template <class Real>
+  static constexpr double kClose = std::is_same_v<Real, double> ? 1e-9 : 1e-18;
+
   const SpanPolynomial* span_;
   std::vector<DoubleDouble> c_;  // N - x D
+  std::vector<double> near_;     // rounded
   DoubleDouble t_ = 0.5;
 };
 
@@ -141,6 +174,7 @@ bool fit_span(const SpanPolynomial& span, double x_a, double x_b, const FitLimit
     if (x > x_a && x < x_b && (ends.empty() || x > ends.back())) ends.push_back(x);
   }
   ends.push_back(x_b);
+  pieces.right.clear();
   for (const double end : ends) {
     if (!fit_pieces(target, x_a, end, limits, pieces)) return false;
     x_a = end;
@@ -248,6 +282,9 @@ Result<ProgramParts> inverted_parts(const NurbsCurve& curve, const CompileOption
     return fail(ErrorCode::empty_domain, "curve '" + curve.name() + "': time never moves on");
   }
   parts.end_values = values_at(spans.back(), 1.0);
+  if (!(pieces.max_error <= options.max_error)) {
+    return missed_bound(curve, pieces.max_error, options.max_error, "this is rounding");
+  }
   pieces.lay_out(parts);
   return parts;
 }

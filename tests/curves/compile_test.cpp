@@ -19,6 +19,9 @@ using testing::made;
 using testing::random_curve;
 using testing::rational;
 
+/// What Horner of degree 7 may round away with points in -1..1.
+constexpr double kRounding = 1e-13;
+
 /// Largest |program - curve| at places the compiler did not look at.
 double worst_error(const CurveProgram& program, const NurbsCurve& curve, int places,
                    std::span<const double> controls = {}) {
@@ -47,6 +50,63 @@ TEST(Compile, CurvesUpToDegree7StayExact) {
     EXPECT_LT(program->max_error(), 1e-12);
     EXPECT_LT(worst_error(*program, curve, 300), 1e-12) << "curve " << i;
   }
+}
+
+TEST(Compile, HigherDegreesAreFittedWithinTheirBound) {
+  const std::uint64_t seed = support::test_seed();
+  for (int i = 0; i < support::test_count(120); ++i) {
+    Draws draw(seed + 5, i);
+    testing::RandomCurveOptions random;
+    random.min_degree = 8;
+    random.max_degree = 15;
+    random.dim = draw.whole(1, 2);
+    const NurbsCurve curve = random_curve(draw, random);
+    CompileOptions options;
+    options.max_error = i % 3 == 0 ? 1e-5 : 1e-9;
+    const auto program = compile_parametric(curve, options);
+    ASSERT_TRUE(program) << program.error().message;
+    EXPECT_LE(program->piece_degree(), 7);
+    EXPECT_LE(program->max_error(), options.max_error);
+    EXPECT_LE(worst_error(*program, curve, 2000), program->max_error() + kRounding) << i;
+  }
+}
+
+TEST(Compile, RationalSpansBecomePolynomialWithinTheirBound) {
+  const std::uint64_t seed = support::test_seed();
+  for (int i = 0; i < support::test_count(150); ++i) {
+    Draws draw(seed + 6, i);
+    testing::RandomCurveOptions random;
+    random.max_degree = 15;
+    random.dim = draw.whole(1, 2);
+    const NurbsCurve curve = random_curve(draw, random);
+    CompileOptions options;
+    options.max_error = 1e-9;
+    const auto program = compile_polynomial(curve, options);
+    ASSERT_TRUE(program) << program.error().message;
+    EXPECT_FALSE(program->is_rational());
+    EXPECT_LE(program->max_error(), options.max_error);
+    EXPECT_LE(worst_error(*program, curve, 2000), program->max_error() + kRounding) << i;
+  }
+}
+
+TEST(Compile, ThePolynomialFormOfACurveWithoutWeightsIsExact) {
+  const auto program = compile_polynomial(line({0, 1, 0.5, 0.7, 0}, 3));
+  ASSERT_TRUE(program);
+  EXPECT_EQ(program->piece_degree(), 3);
+  EXPECT_EQ(program->piece_count(), 2);
+  EXPECT_LT(program->max_error(), 1e-15);
+}
+
+TEST(Compile, WeightsAMillionToOneStayWithinTheBoundOrAreRefused) {
+  const auto program = compile_function(rational({0, 1, 0.5, 1}, {1e-6, 1e6, 1e-6, 1}, 3));
+  ASSERT_TRUE(program) << program.error().message;
+  EXPECT_LE(program->max_error(), 1e-7);
+  CompileOptions options;
+  options.max_error = 1e-12;
+  options.controls = {{Kind::weight, 1, 0, 1e-6, 1e6}};
+  const auto controlled = compile_function(rational({0, 1, 0.5, 1}, {1, 1e6, 1, 1}, 3), options);
+  ASSERT_FALSE(controlled) << "moved by 1e6 a weight is left with 10 digits";
+  EXPECT_EQ(controlled.error().code, ErrorCode::error_bound_missed);
 }
 
 // Design 6: the 60 dB decays, in decibels of 10^(-3 u).

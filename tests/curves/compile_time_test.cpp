@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+// Curves whose first coordinate is time.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "knotwave/curves/algorithms.h"
+#include "knotwave/curves/compile.h"
+
+#include "curves/random_curves.h"
+#include "support/seed.h"
+
+namespace knotwave::curves {
+namespace {
+using testing::Draws;
+using testing::made;
+
+NurbsCurve timed(int degree, std::vector<double> points, std::vector<double> weights = {},
+                 std::vector<double> knots = {}) {
+  CurveSpec spec;
+  spec.name = "timed";
+  spec.degree = degree;
+  spec.dim = 2;
+  spec.points = std::move(points);
+  spec.weights = std::move(weights);
+  spec.knots = std::move(knots);
+  return made(std::move(spec));
+}
+
+NurbsCurve easing(double x1, double y1, double x2, double y2) {
+  return timed(3, {0, 0, x1, y1, x2, y2, 1, 1});
+}
+
+CurveProgram compiled(const NurbsCurve& curve, const CompileOptions& options = {}) {
+  auto program = compile_function(curve, options);
+  if (!program) ADD_FAILURE() << program.error().message;
+  return program ? std::move(*program) : CurveProgram();
+}
+
+struct GoldenCurve {
+  const char* name;
+  int degree;
+  std::vector<double> points, weights, knots;
+  std::vector<std::array<double, 2>> samples;
+};
+
+const std::vector<GoldenCurve>& golden_curves() {
+  static const std::vector<GoldenCurve> curves = {
+#include "golden/curves/inversion.inc"
+  };
+  return curves;
+}
+
+TEST(CompileTime, MeetsItsBoundOnGoldenCurvesVerticalTangentsIncluded) {
+  for (const GoldenCurve& golden : golden_curves()) {
+    SCOPED_TRACE(golden.name);
+    const NurbsCurve curve = timed(golden.degree, golden.points, golden.weights, golden.knots);
+    for (const double asked : {1e-4, 1e-7, 1e-9}) {
+      CompileOptions options;
+      options.max_error = asked;
+      const CurveProgram program = compiled(curve, options);
+      EXPECT_LE(program.max_error(), asked);
+      for (const auto& [x, y] : golden.samples) {
+        EXPECT_NEAR(program.at_u(x), y, program.max_error() + 1e-15) << "x = " << x;
+      }
+    }
+  }
+}
+
+// Values of research by 40-digit arithmetic; Chromium's, WebKit's and Maya's agree with them.
+TEST(CompileTime, MeetsTheKnownValuesOfEasings) {
+  const CurveProgram ease = compiled(easing(.25, .1, .25, 1));
+  EXPECT_NEAR(ease.at_u(.25), .40851059135539587, 1e-7);
+  EXPECT_NEAR(ease.at_u(.5), .80240338758485699, 1e-7);
+  EXPECT_NEAR(ease.at_u(.75), .96045897834897408, 1e-7);
+  EXPECT_NEAR(compiled(easing(.42, 0, 1, 1)).at_u(.5), .3153568125725393, 1e-7);
+  EXPECT_NEAR(compiled(easing(0, 0, .58, 1)).at_u(.5), .6846431874274607, 1e-7);
+  EXPECT_NEAR(compiled(easing(.42, 0, .58, 1)).at_u(.25), .12916193104731981, 1e-7);
+  EXPECT_NEAR(compiled(easing(0, 1, 0, 1)).at_u(.001), .271, 1e-7);
+  EXPECT_NEAR(compiled(easing(1, 0, 0, 1)).at_u(.5), .5, 1e-7);
+  EXPECT_NEAR(compiled(easing(1, 0, 0, 1)).at_u(.25), .029724605511925197, 1e-7);
+  EXPECT_NEAR(compiled(easing(0, 0, 1. / 3, 1)).at_u(.25), .5, 1e-7);
+}
+
+// ui/gfx/geometry/cubic_bezier_unittest.cc prints five digits; they hold to 1e-5.
+TEST(CompileTime, MeetsChromiumsTables) {
+  const CurveProgram slow = compiled(easing(.25, 0, .75, 1));
+  const double rising[] = {.01136, .03978, .07978, .12803, .18235, .24115, .30323,
+                           .36761, .43345, .5,     .56655, .63238, .69676, .75884,
+                           .81764, .87196, .92021, .96021, .98863};
+  for (int i = 0; i < 19; ++i) EXPECT_NEAR(slow.at_u(.05 * (i + 1)), rising[i], 1e-5);
+  const CurveProgram over = compiled(easing(.5, -1, .5, 2));
+  const double falling[] = {-.08954, -.15613, -.19641, -.20651, -.18232,
+                            -.11992, -.01672, .1266,   .30349,  .5};
+  for (int i = 0; i < 10; ++i) EXPECT_NEAR(over.at_u(.05 * (i + 1)), falling[i], 1e-5);
+  EXPECT_NEAR(compiled(easing(.5, 1, .5, 1)).at_u(.5), .875, 1e-7);
+  EXPECT_NEAR(compiled(easing(.5, 2, .5, 2)).at_u(.5), 1.625, 1e-7);
+  EXPECT_NEAR(compiled(easing(.5, -1, .5, -1)).at_u(.5), -.625, 1e-7);
+}
+
+// OpenUSD, pxr/base/ts, test_Baseline_TsTestBaseline.txt, made by Autodesk Maya: seven digits.
+TEST(CompileTime, MeetsMayasTable) {
+  const CurveProgram program = compiled(timed(3, {1, 1, 1.5, 1.5, 4.5, 2, 5, 2}));
+  EXPECT_NEAR(program.at_u(1.0199005), 1.0187387, 2e-7);
+  EXPECT_NEAR(program.at_u(1.4975124), 1.2723983, 2e-7);
+  EXPECT_NEAR(program.at_u(3.0099502), 1.6896295, 2e-7);
+  EXPECT_NEAR(program.at_u(4.5024876), 1.9524990, 2e-7);
+  EXPECT_NEAR(program.at_u(4.9402985), 1.9982742, 2e-7);
+}
+
+/// y at time x of a cubic by halving in long double: nothing in common with the pieces.
+double halved(std::span<const double> p, double x) {
+  const auto blend = [&](int c, long double t) {
+    long double row[4] = {p[std::size_t(c)], p[std::size_t(2 + c)], p[std::size_t(4 + c)],
+                          p[std::size_t(6 + c)]};
+    for (int level = 3; level > 0; --level) {
+      for (int i = 0; i < level; ++i) row[i] += t * (row[i + 1] - row[i]);
+    }
+    return row[0];
+  };
+  long double low = 0, high = 1;
+  for (int step = 0; step < 90; ++step) {
+    const long double middle = (low + high) / 2;
+    (blend(0, middle) < x ? low : high) = middle;
+  }
+  return static_cast<double>(blend(1, (low + high) / 2));
+}
+
+TEST(CompileTime, TwoThousandRandomCubicsMeetTheirBound) {
+  const std::uint64_t seed = support::test_seed();
+  double worst_ratio = 0;
+  int most_pieces = 0;
+  for (int i = 0; i < support::test_count(2000); ++i) {
+    Draws draw(seed, i);
+    const NurbsCurve curve =
+        easing(draw.unit(), draw.between(-1, 2), draw.unit(), draw.between(-1, 2));
+    const CurveProgram program = compiled(curve);
+    ASSERT_LE(program.max_error(), 1e-7) << i;
+    most_pieces = std::max(most_pieces, program.piece_count());
+    for (int k = 0; k < 40; ++k) {
+      const double x = k < 36 ? draw.unit() : std::ldexp(draw.unit(), -10 * (k - 35));
+      const double error = std::abs(program.at_u(x) - halved(curve.points(), x));
+      worst_ratio = std::max(worst_ratio, error / program.max_error());
+      ASSERT_LE(error, program.max_error() + 1e-15) << "curve " << i << ", x = " << x;
+    }
+  }
+  RecordProperty("most_pieces", most_pieces);
+  EXPECT_LE(most_pieces, 120);
+  EXPECT_GT(worst_ratio, 0.8) << "the reported error is much larger than any error there is";
+}
+
+// OpenUSD, regression.md: with handles of length a and b time never goes back if and only if both
+// are at most 1 or a^2 + b^2 + a b - 2 a - 2 b + 1 <= 0.
+TEST(CompileTime, AcceptsExactlyTheHandlesOfTheEllipseCondition) {
+  int accepted = 0, refused = 0;
+  for (int i = 0; i <= 30; ++i) {
+    for (int j = 0; j <= 30; ++j) {
+      const double a = i * 0.05, b = j * 0.05;
+      const double ellipse = a * a + b * b + a * b - 2 * a - 2 * b + 1;
+      if (std::abs(ellipse) < 1e-9) continue;
+      const bool forward = (a <= 1 && b <= 1) || ellipse <= 0;
+      const auto program = compile_function(easing(a, 0.3, 1 - b, 0.6));
+      ASSERT_EQ(program.has_value(), forward) << "handles " << a << " and " << b;
+      (forward ? accepted : refused) += 1;
+    }
+  }
+  EXPECT_GT(accepted, 300);
+  EXPECT_GT(refused, 100);
+}
+
+TEST(CompileTime, NamesTheIntervalWhereTimeGoesBack) {
+  const auto program = compile_function(easing(2, 0.3, -1, 0.6));
+  ASSERT_FALSE(program);
+  EXPECT_EQ(program.error().code, ErrorCode::not_a_function);
+  // x' = 0 where 10 t^2 - 10 t + 2 = 0: t = (1 -+ sqrt(1/5)) / 2.
+  const std::string& message = program.error().message;
+  EXPECT_NE(message.find("u = 0.27639"), std::string::npos) << message;
+  EXPECT_NE(message.find("and 0.7236"), std::string::npos) << message;
+}
+
+TEST(CompileTime, AVerticalSegmentBecomesAJump) {
+  const CurveProgram program = compiled(timed(1, {0, 0, 1, 0.5, 1, -0.25, 2, 1}));
+  EXPECT_EQ(program.piece_count(), 2);
+  EXPECT_EQ(program.piece_degree(), 1);
+  EXPECT_EQ(program.at_u(1), -0.25);
+  EXPECT_NEAR(program.at_u(1 - 1e-12), 0.5, 1e-11);
+  EXPECT_EQ(program.at_u(0), 0.0);
+  EXPECT_EQ(program.at_u(2), 1.0);
+}
+
+TEST(CompileTime, VerticalSegmentsAtTheEndsJumpThere) {
+  const CurveProgram program = compiled(timed(1, {0, 0, 0, 1, 2, 0.5, 2, 0}));
+  EXPECT_EQ(program.at_u(0), 1.0) << "the value to the right";
+  EXPECT_EQ(program.at_u(1), 0.75);
+  EXPECT_NEAR(program.at_u(2 - 1e-12), 0.5, 1e-11);
+  EXPECT_EQ(program.at_u(2), 0.0) << "what is held from here on";
+  EXPECT_EQ(program.at_u(3), 0.0);
+}
+
+TEST(CompileTime, DeclaredJumpsKeepTheirTime) {
+  CurveSpec spec;
+  spec.name = "jump";
+  spec.degree = 2;
+  spec.dim = 2;
+  spec.points = {0, 0, 0.1, 1, 1, 0.8, 1, -1, 1.5, -0.5, 2, 0};
+  spec.knots = {0, 0, 0, 0.5, 0.5, 0.5, 1, 1, 1};
+  spec.jumps = {0.5};
+  const CurveProgram program = compiled(made(spec));
+  EXPECT_EQ(program.at_u(1), -1.0);
+  EXPECT_NEAR(program.at_u(std::nextafter(1, 0)), 0.8, 1e-7);
+  spec.points[6] = 1.25;
+  const auto gap = compile_function(made(spec));
+  ASSERT_FALSE(gap);
+  EXPECT_EQ(gap.error().code, ErrorCode::not_a_function);
+  EXPECT_NE(gap.error().message.find("leaps from x = 1 to 1.25"), std::string::npos)
+      << gap.error().message;
+}
+
+TEST(CompileTime, ATimeThatNeverMovesIsRefused) {
+  const auto program = compile_function(timed(2, {1, 0, 1, 1, 1, 0}));
+  ASSERT_FALSE(program);
+  EXPECT_EQ(program.error().code, ErrorCode::empty_domain);
+}
+
+TEST(CompileTime, TooFewPiecesAreRefusedWithBothErrors) {
+  CompileOptions options;
+  options.max_pieces = 3;
+  const auto program = compile_function(easing(0, 1, 0, 1), options);
+  ASSERT_FALSE(program);
+  EXPECT_EQ(program.error().code, ErrorCode::error_bound_missed);
+  EXPECT_NE(program.error().message.find("3 pieces are not enough"), std::string::npos);
+}
+
+TEST(CompileTime, ControlsAreRefused) {
+  CompileOptions options;
+  options.controls = {{ControlRange::Kind::weight, 1, 0, 0.5, 2}};
+  const auto program = compile_function(easing(.2, .3, .4, .5), options);
+  ASSERT_FALSE(program);
+  EXPECT_EQ(program.error().code, ErrorCode::unsupported);
+}
+
+TEST(CompileTime, PolylinesInTimeStayExactLines) {
+  const CurveProgram program = compiled(timed(1, {0, 0, 0.125, 1, 1, 0.5, 4, 0}));
+  EXPECT_EQ(program.piece_degree(), 1);
+  EXPECT_EQ(program.piece_count(), 3);
+  EXPECT_EQ(program.max_error(), 0.0);
+  EXPECT_EQ(program.at_u(0.0625), 0.5);
+  EXPECT_EQ(program.at_u(2.5), 0.25);
+}
+
+TEST(CompileTime, EndsAreTheControlPointsToTheBitAndBreaksAreContinuous) {
+  for (const GoldenCurve& golden : golden_curves()) {
+    SCOPED_TRACE(golden.name);
+    const CurveProgram program =
+        compiled(timed(golden.degree, golden.points, golden.weights, golden.knots));
+    EXPECT_EQ(program.u_min(), golden.points[0]);
+    EXPECT_EQ(program.u_max(), golden.points[golden.points.size() - 2]);
+    EXPECT_EQ(program.at_u(program.u_min()), golden.points[1]);
+    EXPECT_EQ(program.at_u(program.u_max()), golden.points.back());
+    for (int i = 0; i + 1 < program.piece_count(); ++i) {
+      double end = 0;
+      for (const double c : program.coefficients(i)) end += c;
+      EXPECT_NEAR(end, program.coefficients(i + 1)[0], 1e-14);
+    }
+  }
+}
+
+TEST(CompileTime, AJoinInTimeStartsAtItsValueAndSlopeAndLeavesTheTailAlone) {
+  const NurbsCurve curve =
+      timed(3, {0, 0, 0.1, 1.2, 0.5, 0.9, 1, 0.6, 1.5, 0.7, 2, 0.3, 3, 0}, {1, 1, 2, 1, 0.5, 1, 1});
+  const CurveProgram program = compiled(curve);
+  for (const double x : {0.0, 0.01, 0.4, 0.9, 2.0}) {
+    const auto join = compile_join(curve, x);
+    ASSERT_TRUE(join) << join.error().message;
+    EXPECT_EQ(join->basis.u_min(), x);
+    EXPECT_NEAR(join->p0, program.at_u(x), 2e-7);
+    EXPECT_NEAR(join->slope_factor * (join->p1 - join->p0), program.slope_at_u(x), 2e-4);
+    const auto deltas = join->join(0.45, 0.2);
+    ASSERT_FALSE(deltas.limited);
+    const auto joined = [&](double at) {
+      return program.at_u(at) + deltas.dp0 * join->basis.at_u(at, 0) +
+             deltas.dp1 * join->basis.at_u(at, 1);
+    };
+    EXPECT_NEAR(joined(x), 0.45, 2e-7);
+    EXPECT_NEAR((joined(x + 1e-5) - joined(x)) / 1e-5, 0.2, 0.02);
+    EXPECT_LE(join->u_basis_end, 3.0);
+    for (double tail = join->u_basis_end; tail <= 3; tail += 0.05) {
+      EXPECT_EQ(joined(tail), program.at_u(tail));
+    }
+  }
+  const auto late = compile_join(curve, 3.0);
+  ASSERT_FALSE(late);
+  EXPECT_EQ(late.error().code, ErrorCode::parameter_out_of_range);
+}
+
+TEST(CompileTime, AJoinInTimeIsTheCurveWithItsFirstTwoValuesMoved) {
+  const NurbsCurve curve = timed(3, {0, 0, 0.1, 1, 0.5, 0.9, 1, 0.6, 1.5, 0.7}, {1, 1, 2, 1, 0.5});
+  const CurveProgram program = compiled(curve);
+  const auto join = compile_join(curve, 0);
+  ASSERT_TRUE(join);
+  const auto deltas = join->join(0.3, 1);
+  CurveSpec spec = curve.spec();
+  spec.points[1] += deltas.dp0;
+  spec.points[3] += deltas.dp1;
+  const CurveProgram moved = compiled(made(std::move(spec)));
+  for (int i = 0; i <= 150; ++i) {
+    const double x = 0.01 * i;
+    EXPECT_NEAR(
+        program.at_u(x) + deltas.dp0 * join->basis.at_u(x, 0) + deltas.dp1 * join->basis.at_u(x, 1),
+        moved.at_u(x), 4e-7);
+  }
+}
+
+TEST(CompileTime, AVerticalStartJoinsByValueOnly) {
+  const auto join = compile_join(easing(0, 1, 0.5, 1), 0);
+  ASSERT_TRUE(join);
+  EXPECT_FALSE(join->moves_p1);
+  const auto deltas = join->join(0.25, 3);
+  EXPECT_EQ(deltas.dp0, 0.25);
+  EXPECT_EQ(deltas.dp1, 0.0);
+  EXPECT_TRUE(deltas.limited);
+}
+
+}  // namespace
+}  // namespace knotwave::curves

@@ -39,6 +39,7 @@ std::string_view nearest_word(std::string_view word, std::span<const std::string
   for (const std::string_view candidate : known) {
     if (candidate.size() > kMaxWord) continue;
     const std::size_t distance = edit_distance(word, candidate);
+    if (2 * distance > std::max(word.size(), candidate.size())) continue;
     if (distance < best_distance) {
       best = candidate;
       best_distance = distance;

@@ -80,10 +80,10 @@ const Node* TableReader::array(std::string_view key) {
 
 const Node* TableReader::required(std::string_view key) {
   const Node* found = node(key);
-  if (found == nullptr) {
-    fail_at(table_, ErrorCode::missing_key, "'" + std::string(key) + "' is missing");
-  }
-  return found;
+  if (found != nullptr) return found;
+  if (ok_) missing_ = key;
+  fail_at(table_, ErrorCode::missing_key, "'" + std::string(key) + "' is missing");
+  return nullptr;
 }
 
 double TableReader::number_from(const Node& found, std::string_view key, double fallback,
@@ -184,17 +184,24 @@ std::vector<double> TableReader::numbers(std::string_view key) {
   return values;
 }
 
+Error TableReader::unknown_key(const Node::Member& member, std::string_view hint) const {
+  Error error = fail(ErrorCode::unknown_key,
+                     what_ + ": unknown key '" + member.key + "'" + std::string(hint));
+  error.source = source_;
+  error.line = member.line;
+  error.column = member.column;
+  return error;
+}
+
 Result<void> TableReader::finish() {
-  if (!ok_) return error_;
+  if (!ok_ && missing_.empty()) return error_;
   for (const Node::Member& member : table_.members) {
     if (std::find(known_.begin(), known_.end(), member.key) != known_.end()) continue;
-    Node at;
-    at.line = member.line;
-    at.column = member.column;
-    fail_at(at, ErrorCode::unknown_key,
-            "unknown key '" + member.key + "'" + suggestion(member.key, known_));
-    return error_;
+    if (ok_) return unknown_key(member, suggestion(member.key, known_));
+    const std::string hint = suggestion(member.key, {&missing_, 1});
+    if (!hint.empty()) return unknown_key(member, hint);
   }
+  if (!ok_) return error_;
   return {};
 }
 

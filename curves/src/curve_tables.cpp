@@ -140,22 +140,9 @@ bool read_rows(TableReader& reader, const Node& rows, std::string_view what, int
   return true;
 }
 
-const Node* required(TableReader& reader, const Node& table, std::string_view key) {
-  const Node* found = reader.node(key);
-  if (found == nullptr) {
-    reader.fail_at(table, ErrorCode::missing_key, "'" + std::string(key) + "' is missing");
-  }
-  return found;
-}
-
-const Node* required_array(TableReader& reader, const Node& table, std::string_view key) {
-  return required(reader, table, key) != nullptr ? reader.array(key) : nullptr;
-}
-
-// The range of a degree is checked with the rest of the spec; here only that it fits an int.
-int read_degree(TableReader& reader, const Node& table, std::string_view key, const Node*& place) {
-  place = required(reader, table, key);
-  return reader.integer(key, 1, -1'000'000, 1'000'000);
+int read_degree(TableReader& reader, std::string_view key, const Node*& place) {
+  place = reader.required(key);
+  return reader.integer(key, 1, 1, kMaxDegree);
 }
 
 const Node* read_numbers(TableReader& reader, std::string_view key, std::vector<double>& out) {
@@ -170,8 +157,8 @@ Result<NurbsCurve> read_curve(const Node& table, const std::string& name, std::s
   spec.name = name;
   spec.dim = 0;
   places.table = &table;
-  spec.degree = read_degree(reader, table, "degree", places.degree);
-  places.points = required_array(reader, table, "points");
+  spec.degree = read_degree(reader, "degree", places.degree);
+  places.points = reader.required("points") != nullptr ? reader.array("points") : nullptr;
   if (places.points != nullptr) read_row(reader, *places.points, spec.dim, spec.points);
   if (spec.dim == 0) spec.dim = 1;
   places.weights = read_numbers(reader, "weights", spec.weights);
@@ -191,9 +178,9 @@ Result<NurbsSurface> read_surface(const Node& table, const std::string& name,
   spec.name = name;
   spec.dim = 0;
   places.table = &table;
-  spec.degree_u = read_degree(reader, table, "degree_u", places.degree);
-  spec.degree_v = read_degree(reader, table, "degree_v", places.degree_v);
-  places.points = required_array(reader, table, "points");
+  spec.degree_u = read_degree(reader, "degree_u", places.degree);
+  spec.degree_v = read_degree(reader, "degree_v", places.degree_v);
+  places.points = reader.required("points") != nullptr ? reader.array("points") : nullptr;
   if (places.points != nullptr) {
     read_rows(reader, *places.points, "points", spec.dim, spec.count_u, spec.points);
     spec.count_v = static_cast<int>(places.points->items.size());
@@ -220,6 +207,9 @@ Result<Item> read_reference(const Node& table, const std::string& name, std::str
   TableReader reader(table, source, what);
   const std::string reference = reader.string("curve_file");
   const Node& at = *table.find("curve_file");
+  if (table.members.size() > 1) {
+    reader.fail_at(at, ErrorCode::malformed, "a table with curve_file has no other key");
+  }
   if (const auto read = reader.finish(); !read) return read.error();
   if (!lookup) {
     reader.fail_at(at, ErrorCode::unsupported,

@@ -37,6 +37,11 @@ bool is_curve_target(const MapSpec& map) {
   return map.target == MapTarget::curve_weight || map.target == MapTarget::curve_point;
 }
 
+// Targets that are there with a section of the patch.
+bool is_section_word(std::string_view word) {
+  return word == "noise" || word == "filter" || word == "shaper" || word == "crossfade";
+}
+
 // x, y, z, w as 0 to 3; no word is 0.
 int coordinate_index(std::string_view word) {
   constexpr std::string_view kWords = "xyzw";
@@ -153,9 +158,12 @@ void PatchReader::read_map_target(TableReader& reader, MapSpec& map) {
   if (word.starts_with("curve.")) return read_curve_target(reader, *at, map);
   const auto target = find_target(patch_, word);
   if (!target) {
+    const std::string section = word.substr(0, word.find('.'));
+    const bool absent = is_section_word(section) && root_.find(section) == nullptr;
     return reader.fail_at(
         *at, ErrorCode::unknown_name,
-        "there is no target '" + word + "' in this patch" + nearest(word, target_words(patch_)));
+        "there is no target '" + word + "' in this patch" +
+            (absent ? ", which has no [" + section + "]" : nearest(word, target_words(patch_))));
   }
   map.target = target->target;
   map.target_index = target->index;
@@ -199,8 +207,9 @@ void PatchReader::read_curve_target(TableReader& reader, const Node& at, MapSpec
   if (map.target_coordinate < 0 || map.target_coordinate >= curve->dim()) {
     return reader.fail_at(at, ErrorCode::parameter_out_of_range,
                           "the points of curve '" + curve->name() + "' have " +
-                              std::to_string(curve->dim()) + " coordinates, there is no '" +
-                              std::string(parts[4]) + "'");
+                              std::to_string(curve->dim()) +
+                              (curve->dim() == 1 ? " coordinate" : " coordinates") +
+                              ", there is no '" + std::string(parts[4]) + "'");
   }
   check_control_conflict(reader, at, map);
 }

@@ -137,7 +137,7 @@ std::string PatchReader::curve_name(TableReader& reader, std::string_view key, R
   if (const auto* surface = patch_.curves.find_surface(name)) {
     if (role != Role::wave) {
       reader.fail_at(*at, ErrorCode::unknown_name,
-                     "'" + name + "' is a surface; " + std::string(key) + " needs a curve");
+                     "'" + name + "' is a surface; a curve is needed here");
     } else if (surface->dim() > 2) {
       reader.fail_at(*at, ErrorCode::not_scalar,
                      "the points of surface '" + name + "' have " + std::to_string(surface->dim()) +

@@ -66,17 +66,19 @@ class TableReader {
   std::vector<double> numbers(std::string_view key);  ///< empty when absent
   /// The raw member, or null; marks the key as known.
   const Node* node(std::string_view key);
-  const Node* table(std::string_view key);  ///< null when absent; wrong_type if no table
-  const Node* array(std::string_view key);  ///< null when absent; wrong_type if no array
+  const Node* required(std::string_view key);  ///< missing_key when absent
+  const Node* table(std::string_view key);     ///< null when absent; wrong_type if no table
+  const Node* array(std::string_view key);     ///< null when absent; wrong_type if no array
 
   bool ok() const { return ok_; }
   /// Keeps an error at the place of `at` unless there is one already.
   void fail_at(const Node& at, ErrorCode code, std::string message);
-  /// The first error, or unknown_key for the first key not asked for.
+  /// The first error, or unknown_key for the first key not asked for. A missing key that stands
+  /// there misspelt is told as unknown_key too.
   Result<void> finish();
 
  private:
-  const Node* required(std::string_view key);
+  Error unknown_key(const Node::Member& member, std::string_view hint) const;
   double number_from(const Node& found, std::string_view key, double fallback, double low,
                      double high);
   std::string string_from(const Node& found, std::string_view key, std::string_view fallback);
@@ -85,6 +87,7 @@ class TableReader {
   std::string source_;
   std::string what_;
   std::vector<std::string_view> known_;
+  std::string_view missing_;
   bool ok_ = true;
   Error error_;
 };

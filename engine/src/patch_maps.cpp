@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "knotwave/base/suggest.h"
+#include "knotwave/dsp/builtin_waves.h"
 
 #include "patch_reader.h"
 #include "patch_words.h"
@@ -182,6 +183,10 @@ void PatchReader::read_curve_target(TableReader& reader, const Node& at, MapSpec
   }
   map.target = weight ? MapTarget::curve_weight : MapTarget::curve_point;
   map.target_curve = parts[1];
+  if (dsp::is_builtin_wave(map.target_curve)) {
+    return reader.fail_at(at, ErrorCode::unsupported,
+                          "'" + map.target_curve + "' is built in; draw a curve to move it");
+  }
   const curves::NurbsCurve* curve = find_curve(map.target_curve);
   if (curve == nullptr) {
     return reader.fail_at(at, ErrorCode::unknown_name,

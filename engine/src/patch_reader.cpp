@@ -7,8 +7,8 @@
 
 #include "knotwave/base/suggest.h"
 #include "knotwave/curves/algorithms.h"
+#include "knotwave/dsp/builtin_waves.h"
 
-#include "builtin_curves.h"
 #include "patch_words.h"
 
 namespace knotwave::engine {
@@ -81,7 +81,7 @@ void PatchReader::read_curves() {
   patch_.curves = std::move(*set);
   for (const char* section : {"curves", "surfaces"}) {
     const Node* tables = root_.find(section);
-    for (const std::string_view builtin : builtin_curve_names()) {
+    for (const std::string_view builtin : dsp::builtin_wave_names()) {
       if (tables == nullptr || tables->find(builtin) == nullptr) continue;
       const Node& at = *tables->find(builtin);
       fail_at(at.line, at.column, ErrorCode::duplicate_name,
@@ -111,7 +111,8 @@ void PatchReader::read_tuning(TableReader& top) {
 }
 
 std::vector<std::string_view> PatchReader::curve_words(bool with_surfaces) const {
-  std::vector<std::string_view> words(builtin_curve_names().begin(), builtin_curve_names().end());
+  const auto builtin = dsp::builtin_wave_names();
+  std::vector<std::string_view> words(builtin.begin(), builtin.end());
   for (const auto& curve : patch_.curves.curves) words.push_back(curve.name());
   if (!with_surfaces) return words;
   for (const auto& surface : patch_.curves.surfaces) words.push_back(surface.name());
@@ -120,9 +121,8 @@ std::vector<std::string_view> PatchReader::curve_words(bool with_surfaces) const
 
 const curves::NurbsCurve* PatchReader::find_curve(const std::string& name) {
   if (const auto* drawn = patch_.curves.find_curve(name)) return drawn;
-  const auto builtin = builtin_curve_names();
-  if (std::find(builtin.begin(), builtin.end(), name) == builtin.end()) return nullptr;
-  patch_.curves.curves.push_back(builtin_curve(name));
+  if (!dsp::is_builtin_wave(name)) return nullptr;
+  patch_.curves.curves.push_back(dsp::builtin_curve(name).value());
   return &patch_.curves.curves.back();
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "knotwave/engine/patch.h"
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -9,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "builtin_curves.h"
+#include "support/broken.h"
 
 namespace knotwave::engine {
 namespace {
@@ -244,29 +243,6 @@ TEST(Patch, EveryKeyReachesItsField) {
   EXPECT_EQ(patch.maps[4].target_index, 1);
 }
 
-TEST(Patch, TheBuiltInSineIsASineWithinOnePartInTenToTheTen) {
-  const auto sine = builtin_curve("sine");
-  for (int i = 0; i <= 4096; ++i) {
-    const double u = i / 4096.0;
-    double value = 0;
-    sine.evaluate(u, {&value, 1});
-    EXPECT_NEAR(value, std::sin(2 * 3.14159265358979323846 * u), 1e-10) << u;
-  }
-}
-
-TEST(Patch, BuiltInCurvesBeginAsASineDoes) {
-  double value = 0;
-  builtin_curve("triangle").evaluate(0.25, {&value, 1});
-  EXPECT_EQ(value, 1);
-  builtin_curve("saw").evaluate(0.75, {&value, 1});
-  EXPECT_EQ(value, 0.5);
-  const auto square = builtin_curve("square");
-  square.evaluate(0.25, {&value, 1});
-  EXPECT_EQ(value, 1);
-  square.evaluate(0.5, {&value, 1});
-  EXPECT_EQ(value, -1);
-}
-
 TEST(Patch, CurvesComeFromFilesBesideThePatchUnderTheNameOfTheTable) {
   const Folder folder;
   folder.write("curves/decay.toml",
@@ -358,6 +334,21 @@ TEST(Patch, ABankReadsEachPatchOnceAndSpreadsRangesOfKeys) {
   EXPECT_EQ(bank->entries[4].key, 43);
   EXPECT_EQ(bank->entries[4].note, 50);
   EXPECT_EQ(bank->entries[4].choke_group, 2);
+}
+
+TEST(Patch, EachBrokenPatchAndBankIsReportedAtItsFault) {
+  auto files = support::broken_files("patch_");
+  const auto banks = support::broken_files("bank_");
+  files.insert(files.end(), banks.begin(), banks.end());
+  EXPECT_GE(files.size(), 50u);
+  for (const auto& file : files) {
+    const auto bank = read_bank(file.path);
+    ASSERT_FALSE(bank) << file.name;
+    EXPECT_EQ(support::broken_report(file, bank.error()), file.report);
+    EXPECT_EQ(std::string(to_string(bank.error().code)), file.code) << file.name;
+    EXPECT_GE(bank.error().line, 1) << file.name;
+    EXPECT_GE(bank.error().column, 1) << file.name;
+  }
 }
 
 TEST(Patch, AnEnvelopeGeneratorPatchIsRefusedByName) {

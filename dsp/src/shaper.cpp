@@ -1,2 +1,144 @@
 // SPDX-License-Identifier: MIT
 #include "knotwave/dsp/shaper.h"
+
+#include <algorithm>
+
+#include "knotwave/base/fp_state.h"
+
+namespace knotwave::dsp {
+namespace {
+
+constexpr double kLargestInput = 1e6;
+constexpr double kMaxError = 3e-8;  // of the polynomial form: -150 dB
+
+std::size_t at_index(int i) { return static_cast<std::size_t>(i); }
+
+double conditioned(double x) {
+  if (x != x) return 0;
+  return base::snap_to_zero(std::clamp(x, -kLargestInput, kLargestInput));
+}
+
+Result<curves::CurveProgram> polynomial_program(const curves::NurbsCurve& curve) {
+  curves::CompileOptions options;
+  options.max_error = kMaxError;
+  if (curve.dim() == 1) return curves::compile_polynomial(curve, options);
+  auto program = curves::compile_function(curve, options);
+  if (program && program->is_rational()) {
+    return fail(ErrorCode::unsupported,
+                "curve '" + curve.name() +
+                    "' does not become plain polynomials of its x; a shaper needs them. Without "
+                    "weights, or as a 1-D curve, it works");
+  }
+  return program;
+}
+
+}  // namespace
+
+Result<ShaperProgram> ShaperProgram::create(const curves::NurbsCurve& curve) {
+  const auto program = polynomial_program(curve);
+  if (!program) return program.error();
+  ShaperProgram shaper;
+  shaper.pieces_ = program->piece_count();
+  shaper.degree_ = program->piece_degree();
+  shaper.max_error_ = program->max_error();
+  shaper.breaks_.assign(program->breaks().begin(), program->breaks().end());
+  double area = 0, lost = 0;  // Kahan's sum
+  shaper.area_.push_back(0);
+  for (int piece = 0; piece < shaper.pieces_; ++piece) {
+    const double width = shaper.breaks_[at_index(piece) + 1] - shaper.breaks_[at_index(piece)];
+    shaper.inverse_widths_.push_back(1 / width);
+    const auto coefficients = program->coefficients(piece);
+    double whole = 0;
+    for (std::size_t k = 0; k < coefficients.size(); ++k) {
+      shaper.terms_.push_back(coefficients[k] / static_cast<double>(k + 1));
+      whole += shaper.terms_.back();
+    }
+    const double part = whole * width - lost;
+    const double sum = area + part;
+    lost = (sum - area) - part;
+    area = sum;
+    shaper.area_.push_back(area);
+  }
+  const auto first = program->coefficients(0);
+  const auto last = program->coefficients(shaper.pieces_ - 1);
+  shaper.first_value_ = first[0];
+  for (const double c : last) shaper.last_value_ += c;
+  return shaper;
+}
+
+ShaperProgram::Input ShaperProgram::locate(double x, int hint) const KNOTWAVE_RT {
+  x = conditioned(x);
+  const int near = std::clamp(hint, 0, pieces_ - 1);
+  if (breaks_[at_index(near)] <= x && x < breaks_[at_index(near) + 1]) return {x, near};
+  const auto after = std::upper_bound(breaks_.begin(), breaks_.end(), x);
+  return {x, static_cast<int>(after - breaks_.begin()) - 1};
+}
+
+// With a = t(x0), b = t(x1) the mean of t^k over [a, b] is h_k(a, b) / (k + 1), where
+// h_k = a^k + a^(k-1) b + ... + b^k = a h_(k-1) + b^k. The blossom of the antiderivative, in short.
+double ShaperProgram::piece_mean(int piece, double x0, double x1) const KNOTWAVE_RT {
+  const double start = breaks_[at_index(piece)];
+  const double a = (x0 - start) * inverse_widths_[at_index(piece)];
+  const double b = (x1 - start) * inverse_widths_[at_index(piece)];
+  const double* terms = terms_.data() + at_index(piece) * at_index(degree_ + 1);
+  double power = 1, h = 1;
+  double sum = terms[0];
+  for (int k = 1; k <= degree_; ++k) {
+    power *= b;
+    h = a * h + power;
+    sum += terms[k] * h;
+  }
+  return sum;
+}
+
+double ShaperProgram::mean(Input a, Input b) const KNOTWAVE_RT {
+  if (b.x < a.x) std::swap(a, b);
+  if (a.piece == b.piece) {
+    if (a.piece < 0) return first_value_;
+    if (a.piece >= pieces_) return last_value_;
+    return piece_mean(a.piece, a.x, b.x);
+  }
+  // Different pieces, so b.x - a.x is at least one step of double and its parts are exact to
+  // rounding: their quotients are fractions of 1.
+  double sum = 0;
+  const int first_whole = a.piece + 1;
+  const int last_whole = b.piece - 1;
+  const double left = breaks_[at_index(first_whole)] - a.x;
+  sum += left *
+         (a.piece < 0 ? first_value_ : piece_mean(a.piece, a.x, breaks_[at_index(first_whole)]));
+  if (last_whole >= first_whole)
+    sum += area_[at_index(last_whole) + 1] - area_[at_index(first_whole)];
+  const double right = b.x - breaks_[at_index(b.piece)];
+  sum += right *
+         (b.piece >= pieces_ ? last_value_ : piece_mean(b.piece, breaks_[at_index(b.piece)], b.x));
+  return sum / (b.x - a.x);
+}
+
+double ShaperProgram::at(double x) const KNOTWAVE_RT {
+  const Input input = locate(x, 0);
+  return mean(input, input);
+}
+
+double ShaperProgram::mean(double x0, double x1) const KNOTWAVE_RT {
+  const Input a = locate(x0, 0);
+  return mean(a, locate(x1, a.piece));
+}
+
+void Shaper::render(const ShaperProgram& program, std::span<const float> drive, float mix,
+                    std::span<const float> in, std::span<float> out) KNOTWAVE_RT {
+  const double wet = mix > 0 ? std::min(static_cast<double>(mix), 1.0) : 0.0;
+  ShaperProgram::Input last = program.locate(last_, last_piece_);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double dry = conditioned(static_cast<double>(in[i]));
+    const ShaperProgram::Input input =
+        program.locate(static_cast<double>(drive[i]) * dry, last.piece);
+    const double shaped = program.mean(last, input);
+    out[i] = static_cast<float>(wet * shaped + (1 - wet) * (0.5 * (dry + last_dry_)));
+    last = input;
+    last_dry_ = dry;
+  }
+  last_ = last.x;
+  last_piece_ = last.piece;
+}
+
+}  // namespace knotwave::dsp

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Any curve as an envelope: loop, sustain and release knots, joins that move control points.
+// docs/envelopes.md has the formulas and pictures.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <span>
-#include <vector>
 
 #include "knotwave/base/time.h"
 #include "knotwave/curves/compile.h"
@@ -24,62 +26,98 @@ struct EnvelopeSpec {
 /// Immutable, shared by voices: the program and its joins.
 class EnvelopeProgram {
  public:
-  /// [control] Errors: those of compile_function and compile_join; parameter_out_of_range (places
-  /// outside the domain or out of order: start <= loop start < loop end <= release); not_scalar.
+  /// [control] Errors: those of compile_function and compile_join; value_out_of_range (seconds not
+  /// above 0); parameter_out_of_range (places outside the domain or out of order: start <= loop
+  /// start < loop end <= release, sustain <= release; sustain and loop together); not_scalar.
   static Result<EnvelopeProgram> create(const curves::NurbsCurve& curve, const EnvelopeSpec& spec);
 
   const curves::CurveProgram& program() const KNOTWAVE_RT { return program_; }
   const EnvelopeSpec& spec() const KNOTWAVE_RT { return spec_; }
   const curves::JoinProgram& start_join() const KNOTWAVE_RT { return start_join_; }
+  /// Only with has_release().
   const curves::JoinProgram& release_join() const KNOTWAVE_RT { return release_join_; }
+  /// A section is left to play when the gate closes; without, the curve runs on to its end.
   bool has_release() const KNOTWAVE_RT { return has_release_; }
+  bool has_sustain() const KNOTWAVE_RT { return spec_.sustain_u >= program_.u_min(); }
+  bool has_loop() const KNOTWAVE_RT { return spec_.loop_end_u > spec_.loop_start_u; }
+  double u_per_second() const KNOTWAVE_RT { return u_per_second_; }
+  /// Joins of straight lines (degree 1) keep the value only.
+  bool joins_slope() const KNOTWAVE_RT { return joins_slope_; }
   double end_value() const KNOTWAVE_RT { return end_value_; }  ///< what it rests at
 
  private:
   EnvelopeSpec spec_;
   curves::CurveProgram program_;
   curves::JoinProgram start_join_, release_join_;
+  double u_per_second_ = 1;
   bool has_release_ = false;
+  bool joins_slope_ = true;
   double end_value_ = 0;
 };
 
-/// One voice's envelope. Gate times carry a fraction of a sample; the value is a function of time.
+/// One voice's envelope. Gate times carry a fraction of a sample; the value is a function of time:
+///   y(n) = program(place(n)) + dp0 R0(age(n)) + dp1 R1(age(n)),
+/// where place and age run along u from the last gate, place wraps at the loop and stops at the
+/// sustain knot, and R0, R1 belong to the join (curves/compile.h), exactly 0 once it is over. Calls
+/// come in order of time; one program plays until the envelope is idle or reset.
 class Envelope {
  public:
   /// Opens the gate at `time`. From rest: plays the curve from its start. While sounding:
   /// Retrigger::current joins from the present value and slope (C0 always, C1 where the hull
-  /// allows); restart jumps to the start. `time_scale` stretches the whole curve (velocity, key):
-  /// clamped to 1e-4..1e4. [audio]
+  /// allows and nothing but time moves the curve); restart jumps to the start. `time_scale`
+  /// stretches the whole curve (velocity, key): clamped to 1e-4..1e4, NaN = 1. [audio]
   void gate_on(const EnvelopeProgram& program, base::SampleTime time, double rate_hz,
                double time_scale) KNOTWAVE_RT;
-  /// Closes the gate at `time`. [audio]
+  /// Closes the gate at `time`: jumps to the release section, joined as above. Held exactly where
+  /// that section starts, the curve goes on as drawn. [audio]
   void gate_off(const EnvelopeProgram& program, base::SampleTime time) KNOTWAVE_RT;
   /// Goes to rest at once. [audio]
-  void reset() KNOTWAVE_RT;
+  void reset() KNOTWAVE_RT { *this = {}; }
 
-  /// Values at samples first..first+n-1 (engine time). Control k moves every sample by
-  /// controls[k][i]; pass none for rest values. [audio]
+  /// Values at samples first..first+n-1 (engine time), none before the last gate. Control k moves
+  /// every sample by controls[k][i]; pass none for rest values. [audio]
   void render(const EnvelopeProgram& program, std::int64_t first,
               std::span<const double* const> controls, std::span<double> out) KNOTWAVE_RT;
 
-  /// The curve has come to its end (or was never started). [audio]
+  /// The curve had come to its end (or was never started) by the last sample rendered. [audio]
   bool is_idle() const KNOTWAVE_RT { return stage_ == Stage::idle; }
-  bool gate_is_open() const KNOTWAVE_RT {
-    return stage_ == Stage::gate_open || stage_ == Stage::holding;
-  }
+  bool gate_is_open() const KNOTWAVE_RT { return stage_ == Stage::gate_open; }
   /// Times p1 was limited to the hull, so that a join was C0. [audio]
   int limited_joins() const KNOTWAVE_RT { return limited_joins_; }
 
  private:
-  enum class Stage { idle, gate_open, holding, released };
+  enum class Stage : std::uint8_t { idle, gate_open, released };
+  /// A place on the curve that moves with time: u(n) = u + (n - sample) per_sample.
+  struct Run {
+    std::int64_t sample = 0;
+    double u = 0;
+  };
+  struct Now {
+    double place_u = 0, value = 0;
+    double slope_per_sample = 0;
+    bool ended = true;
+    bool held = false;  ///< at the sustain knot
+    bool joining = false;
+  };
+  Now now(const EnvelopeProgram& program, base::SampleTime time) const KNOTWAVE_RT;
+  void run_from(double u, base::SampleTime time) KNOTWAVE_RT;
+  void join(const EnvelopeProgram& program, const curves::JoinProgram& section, const Now& from,
+            base::SampleTime time) KNOTWAVE_RT;
+  double place(const EnvelopeProgram& program, double u) const KNOTWAVE_RT;
+  void render_chunk(const EnvelopeProgram& program, std::int64_t first,
+                    std::span<const double* const> controls, std::size_t offset,
+                    std::span<double> out) KNOTWAVE_RT;
+  void add_join(std::int64_t first, std::span<double> out) KNOTWAVE_RT;
+  std::span<const double> last_controls(const EnvelopeProgram& program) const KNOTWAVE_RT;
+
   Stage stage_ = Stage::idle;
-  base::SampleTime origin_;  ///< when the curve was at origin_u_
-  double origin_u_ = 0;
+  Run place_, age_;
   double u_per_sample_ = 0;
   const curves::JoinProgram* join_ = nullptr;
   curves::JoinProgram::Deltas deltas_;
-  double held_ = 0;
   int limited_joins_ = 0;
+  bool controls_moved_ = false;  ///< last_controls_ holds what the last sample was rendered with
+  std::array<double, curves::kMaxControls> last_controls_{};
   curves::CurveCursor cursor_, join_cursor_;
 };
 

@@ -1,2 +1,266 @@
 // SPDX-License-Identifier: MIT
 #include "knotwave/curves/plot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "knotwave/curves/algorithms.h"
+
+#include "plot_axes.h"
+#include "plot_scene.h"
+
+namespace knotwave::curves {
+
+Scene surface_scene(const NurbsSurface& surface, const PlotOptions& options);  // plot_surface.cpp
+
+namespace {
+
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+
+// What a curve looks like: a plane curve in its plane, any other each coordinate over u.
+struct Trace {
+  int x = -1;  ///< coordinate across; -1 = u
+  int y = 0;   ///< coordinate up
+};
+
+class CurvePicture {
+ public:
+  CurvePicture(const NurbsCurve& curve, const PlotOptions& options)
+      : curve_(curve), options_(options), spans_(sample_spans(curve, options.width_px)) {
+    if (curve.dim() == 2) {
+      traces_.push_back({0, 1});
+    } else {
+      for (int c = 0; c < curve.dim(); ++c) traces_.push_back({-1, c});
+    }
+    abscissae_ = greville_abscissae(curve);
+    scene_.width = options.width_px;
+    scene_.height = options.height_px;
+    scene_.title = curve.name() + ": " + description_of(curve);
+    place_frame();
+  }
+
+  Scene drawn() {
+    scene_.text({frame_.left, 30}, curve_.name(), kInk, 20, Shape::Anchor::start, true);
+    scene_.text({frame_.right, 30}, description_of(curve_), kAxis, 14, Shape::Anchor::end);
+    const bool plane = traces_[0].x >= 0;
+    frame_.draw(scene_, plane ? "x" : "u", plane ? "y" : "value");
+    for (std::size_t i = 0; i < traces_.size(); ++i) {
+      if (options_.control_polygon) draw_polygon(traces_[i]);
+      draw_curve(traces_[i], kCurves[i]);
+    }
+    if (options_.knots) draw_knots();
+    for (std::size_t i = 0; i < traces_.size(); ++i) {
+      if (options_.control_polygon) draw_points(traces_[i], kCurves[i]);
+    }
+    if (traces_.size() > 1) draw_names();
+    draw_legend();
+    return std::move(scene_);
+  }
+
+ private:
+  bool shows_weights() const { return options_.weights && curve_.is_rational(); }
+
+  // Points to draw: in a plane those of one period, over u all that lie in it.
+  int points_to_draw(Trace trace, int again) const {
+    const bool once = trace.x >= 0 && curve_.is_periodic();
+    return once ? curve_.point_count() - curve_.degree() + again : curve_.point_count();
+  }
+
+  double control(int i, int coordinate) const {
+    return coordinate < 0 ? abscissae_[index_of(i)]
+                          : curve_.points()[index_of(i * curve_.dim() + coordinate)];
+  }
+
+  Point control_at(int i, Trace trace) const {
+    return frame_.at(control(i, trace.x), control(i, trace.y));
+  }
+
+  Point sample_at(const SpanSamples& span, std::size_t k, Trace trace) const {
+    const auto value = [&](int c) {
+      return c < 0 ? span.u[k] : span.values[k * index_of(curve_.dim()) + index_of(c)];
+    };
+    return frame_.at(value(trace.x), value(trace.y));
+  }
+
+  void place_frame() {
+    frame_.left = 76;
+    frame_.right = options_.width_px - 28.0;
+    frame_.top = 66;
+    frame_.bottom = options_.height_px - 62.0;
+    frame_.x = range_of(traces_[0].x);
+    frame_.y = range_of(traces_[0].y);
+    for (const Trace trace : traces_) {
+      const Range more = range_of(trace.y);
+      frame_.y.include(more.low);
+      frame_.y.include(more.high);
+    }
+    const double margin = (shows_weights() ? 0.09 : 0.05) * frame_.y.size();
+    frame_.y = {frame_.y.low - margin, frame_.y.high + margin};
+    if (traces_[0].x < 0) return;
+    frame_.x = {frame_.x.low - 0.05 * frame_.x.size(), frame_.x.high + 0.05 * frame_.x.size()};
+    // A curve in a plane that goes back and forth is a shape: the same scale both ways.
+    const double scale_x = frame_.x.size() / (frame_.right - frame_.left);
+    const double scale_y = frame_.y.size() / (frame_.bottom - frame_.top);
+    if (is_non_decreasing(curve_, 0) || scale_x > 8 * scale_y || scale_y > 8 * scale_x) return;
+    const auto widen = [](Range& range, double factor) {
+      const double more = (factor - 1) * range.size() / 2;
+      range = {range.low - more, range.high + more};
+    };
+    if (scale_x < scale_y) widen(frame_.x, scale_y / scale_x);
+    if (scale_y < scale_x) widen(frame_.y, scale_x / scale_y);
+  }
+
+  Range range_of(int coordinate) const {
+    if (coordinate < 0) return {curve_.u_min(), curve_.u_max()};
+    Range range{spans_[0].values[index_of(coordinate)], spans_[0].values[index_of(coordinate)]};
+    for (const SpanSamples& span : spans_) {
+      for (std::size_t k = 0; k < span.u.size(); ++k) {
+        range.include(span.values[k * index_of(curve_.dim()) + index_of(coordinate)]);
+      }
+    }
+    if (options_.control_polygon) {
+      const HullRange hull = hull_range(curve_, coordinate);
+      range.include(hull.low);
+      range.include(hull.high);
+    }
+    if (!(range.size() > 1e-9 * std::abs(range.high))) {
+      const double room = std::max(0.5, 0.1 * std::abs(range.high));
+      range = {range.low - room, range.high + room};
+    }
+    return range;
+  }
+
+  void draw_polygon(Trace trace) {
+    std::vector<Point> line;
+    for (int i = 0; i < points_to_draw(trace, 1); ++i) {
+      const Point point = control_at(i, trace);
+      if (frame_.holds(point)) line.push_back(point);
+    }
+    if (line.size() > 1) scene_.line(std::move(line), kPolygon, 1.4, 6);
+  }
+
+  void draw_curve(Trace trace, Color color) {
+    std::vector<Point> line;
+    for (const SpanSamples& span : spans_) {
+      const Point start = sample_at(span, 0, trace);
+      const auto& jumps = curve_.jumps();
+      if (!line.empty() && std::find(jumps.begin(), jumps.end(), span.u0) != jumps.end()) {
+        const Point end = line.back();
+        scene_.line({end, start}, color, 1.4, 3);
+        scene_.line(std::move(line), color, 3);
+        line.clear();
+      }
+      for (std::size_t k = line.empty() ? 0 : 1; k < span.u.size(); ++k) {
+        line.push_back(sample_at(span, k, trace));
+      }
+    }
+    scene_.line(std::move(line), color, 3);
+  }
+
+  // On the axis of u a tick a time, and on each curve a white dot.
+  void draw_knots() {
+    for (const KnotMark& mark : knot_marks(curve_)) {
+      const bool ends = mark.u == curve_.u_min() || mark.u == curve_.u_max();
+      for (std::size_t i = 0; i < traces_.size(); ++i) {
+        std::vector<double> value(index_of(curve_.dim()));
+        curve_.evaluate(mark.u, mark.u == curve_.u_max() ? Side::left : Side::right, value);
+        const Trace trace = traces_[i];
+        const double x = trace.x < 0 ? mark.u : value[index_of(trace.x)];
+        const Point at = frame_.at(x, value[index_of(trace.y)]);
+        if (!ends) scene_.disc(at, 3.2, kWhite, kCurves[i], 1.6);
+        if (traces_[0].x >= 0 && !ends && mark.multiplicity > 1) {
+          scene_.text({at.x + 7, at.y + 14}, "x" + std::to_string(mark.multiplicity), kInk, 11);
+        }
+      }
+      if (traces_[0].x >= 0) continue;
+      const double middle = frame_.at(mark.u, frame_.y.low).x;
+      for (int k = 0; k < mark.multiplicity; ++k) {
+        const double x = middle + 3.5 * (k - 0.5 * (mark.multiplicity - 1));
+        scene_.line({{x, frame_.bottom + 2}, {x, frame_.bottom + 11}}, kInk, 1.6);
+      }
+    }
+  }
+
+  // The area of a point is its weight next to the others'.
+  double radius_of(int i) const {
+    double least = curve_.weights()[0], most = least;
+    for (const double w : curve_.weights()) {
+      least = std::min(least, w);
+      most = std::max(most, w);
+    }
+    if (!options_.weights || !(most > least)) return 4.5;
+    return 3 + 7 * std::sqrt(curve_.weights()[index_of(i)] / most);
+  }
+
+  void draw_points(Trace trace, Color color) {
+    const Color fill = traces_.size() > 1 ? color : kPoint;
+    for (int i = 0; i < points_to_draw(trace, 0); ++i) {
+      const Point point = control_at(i, trace);
+      if (!frame_.holds(point)) continue;
+      const double radius = radius_of(i);
+      scene_.disc(point, radius, {fill.red, fill.green, fill.blue, 0.9}, kWhite, 1.2);
+      if (!shows_weights() || points_to_draw(trace, 0) > 24) continue;
+      const bool at_end = point.x > frame_.right - 40;
+      scene_.text({point.x + (at_end ? -radius - 3 : radius + 3), point.y - radius - 1},
+                  "w " + short_text(curve_.weights()[index_of(i)]), kInk, 11,
+                  at_end ? Shape::Anchor::end : Shape::Anchor::start);
+    }
+  }
+
+  // What the marks mean, along the lower edge.
+  void draw_legend() {
+    double x = frame_.left;
+    const double y = frame_.bottom + 47;
+    const auto say = [&](const std::string& words) {
+      scene_.text({x + 12, y}, words, kAxis, 12);
+      x += 38 + text_width(words, 12);
+    };
+    if (options_.control_polygon) {
+      scene_.disc({x + 3, y - 4}, 4, kPoint, kWhite, 1);
+      say(shows_weights() ? "control point, larger with its weight" : "control point");
+    }
+    if (!options_.knots) return;
+    if (traces_[0].x >= 0) {
+      scene_.disc({x + 3, y - 4}, 3.2, kWhite, kCurves[0], 1.6);
+      return say("knot");
+    }
+    scene_.line({{x + 3, y - 9}, {x + 3, y}}, kInk, 1.6);
+    say("knot, a tick for each time it is repeated");
+  }
+
+  void draw_names() {
+    for (std::size_t i = 0; i < traces_.size(); ++i) {
+      const double x = frame_.left + 30 + 70.0 * static_cast<double>(i);
+      scene_.line({{x, 54}, {x + 22, 54}}, kCurves[i], 3);
+      scene_.text({x + 28, 59}, "x" + std::to_string(i), kInk, 13);
+    }
+  }
+
+  const NurbsCurve& curve_;
+  PlotOptions options_;
+  std::vector<SpanSamples> spans_;
+  std::vector<Trace> traces_;
+  std::vector<double> abscissae_;
+  Frame frame_;
+  Scene scene_;
+};
+
+}  // namespace
+
+std::string plot_svg(const NurbsCurve& curve, const PlotOptions& options) {
+  return svg_of(CurvePicture(curve, options).drawn());
+}
+
+std::string plot_svg(const NurbsSurface& surface, const PlotOptions& options) {
+  return svg_of(surface_scene(surface, options));
+}
+
+std::vector<std::uint8_t> plot_png(const NurbsCurve& curve, const PlotOptions& options) {
+  return png_of(CurvePicture(curve, options).drawn());
+}
+
+std::vector<std::uint8_t> plot_png(const NurbsSurface& surface, const PlotOptions& options) {
+  return png_of(surface_scene(surface, options));
+}
+
+}  // namespace knotwave::curves

@@ -24,7 +24,9 @@ std::string plot_svg(const NurbsSurface& surface, const PlotOptions& options = {
 /// The same picture as PNG bytes.
 std::vector<std::uint8_t> plot_png(const NurbsCurve& curve, const PlotOptions& options = {});
 std::vector<std::uint8_t> plot_png(const NurbsSurface& surface, const PlotOptions& options = {});
-/// The curve as text, `columns` by `rows` characters, for a terminal.
+/// For a terminal, in UTF-8: a line of text, then `rows` lines of `columns` characters. A curve in
+/// Braille dots with its knots below it, a surface as shades of its height.
 std::string plot_text(const NurbsCurve& curve, int columns = 72, int rows = 14);
+std::string plot_text(const NurbsSurface& surface, int columns = 72, int rows = 14);
 
 }  // namespace knotwave::curves

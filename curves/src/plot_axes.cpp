@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "plot_axes.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace knotwave::curves {
+
+void Range::include(double value) {
+  low = std::min(low, value);
+  high = std::max(high, value);
+}
+
+std::vector<double> round_ticks(Range range, int count) {
+  double step = 1;
+  while (step * count < range.size()) step *= 10;
+  while (step * count > range.size() * 10) step /= 10;
+  // step is now a power of ten with at least 1 and less than 10 times too few ticks.
+  if (range.size() / (step / 5) <= count) {
+    step /= 5;
+  } else if (range.size() / (step / 2) <= count) {
+    step /= 2;
+  }
+  std::vector<double> ticks;
+  for (double i = std::ceil(range.low / step - 1e-9); i * step <= range.high + 1e-9 * step; ++i) {
+    ticks.push_back(i * step);
+  }
+  return ticks;
+}
+
+std::string short_text(double value) {
+  char text[32];
+  const double rounded = std::abs(value) < 1e-12 ? 0.0 : value;
+  const auto end =
+      std::to_chars(text, text + sizeof text, rounded, std::chars_format::general, 4).ptr;
+  return {text, end};
+}
+
+bool Frame::holds(Point point) const {
+  return point.x >= left - 1 && point.x <= right + 1 && point.y >= top - 1 && point.y <= bottom + 1;
+}
+
+void Frame::draw(Scene& scene, const std::string& x_name, const std::string& y_name) const {
+  for (const double tick : round_ticks(x, 10)) {
+    const Point foot = at(tick, y.low);
+    scene.line({{foot.x, top}, {foot.x, bottom}}, kFaint, 1);
+    scene.text({foot.x, bottom + 30}, short_text(tick), kInk, 13, Shape::Anchor::middle);
+  }
+  for (const double tick : round_ticks(y, 8)) {
+    const Point foot = at(x.low, tick);
+    const bool zero = tick == 0 && y.low < 0;
+    scene.line({{left, foot.y}, {right, foot.y}}, zero ? kAxis : kFaint, 1);
+    scene.text({left - 10, foot.y + 4.5}, short_text(tick), kInk, 13, Shape::Anchor::end);
+  }
+  scene.line({{left, bottom}, {right, bottom}}, kAxis, 1.2);
+  scene.line({{left, top}, {left, bottom}}, kAxis, 1.2);
+  scene.text({right, bottom + 47}, x_name, kInk, 14, Shape::Anchor::end, true);
+  scene.text({left, top - 12}, y_name, kInk, 14, Shape::Anchor::middle, true);
+}
+
+std::vector<SpanSamples> sample_spans(const NurbsCurve& curve, int steps) {
+  const auto knots = curve.knots();
+  const double whole = curve.u_max() - curve.u_min();
+  const auto dim = static_cast<std::size_t>(curve.dim());
+  std::vector<SpanSamples> spans;
+  for (int i = curve.degree(); i < curve.point_count(); ++i) {
+    SpanSamples span;
+    span.u0 = knots[static_cast<std::size_t>(i)];
+    span.u1 = knots[static_cast<std::size_t>(i + 1)];
+    if (!(span.u0 < span.u1)) continue;
+    const int count =
+        std::max(24, static_cast<int>(std::ceil(steps * (span.u1 - span.u0) / whole)));
+    span.values.resize(static_cast<std::size_t>(count + 1) * dim);
+    for (int k = 0; k <= count; ++k) {
+      const double u = k == count ? span.u1 : span.u0 + (span.u1 - span.u0) * k / count;
+      span.u.push_back(u);
+      curve.evaluate(u, k == count ? Side::left : Side::right,
+                     std::span(span.values).subspan(static_cast<std::size_t>(k) * dim, dim));
+    }
+    spans.push_back(std::move(span));
+  }
+  return spans;
+}
+
+std::vector<KnotMark> knot_marks(const NurbsCurve& curve) {
+  std::vector<KnotMark> marks;
+  for (const double knot : curve.knots()) {
+    if (knot < curve.u_min() || knot > curve.u_max()) continue;
+    if (!marks.empty() && marks.back().u == knot) {
+      ++marks.back().multiplicity;
+    } else {
+      marks.push_back({knot, 1});
+    }
+  }
+  return marks;
+}
+
+std::string description_of(const NurbsCurve& curve) {
+  const auto written = curve.point_count() - (curve.is_periodic() ? curve.degree() : 0);
+  std::string text = "degree " + std::to_string(curve.degree());
+  if (curve.is_rational()) text += ", rational";
+  text += ", " + std::to_string(written) + " points";
+  if (curve.is_periodic()) text += ", periodic";
+  if (!curve.is_periodic() && !curve.is_clamped()) text += ", unclamped";
+  if (!curve.jumps().empty())
+    text += ", " + std::to_string(curve.jumps().size()) + " jump" +
+            (curve.jumps().size() == 1 ? "" : "s");
+  return text;
+}
+
+}  // namespace knotwave::curves

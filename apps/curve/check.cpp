@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+
+#include "knotwave/base/file.h"
+#include "knotwave/engine/patch.h"
+
+#include "curve_input.h"
+#include "verbs.h"
+
+namespace knotwave::curve_app {
+namespace {
+
+std::string count_of(std::size_t n, const std::string& thing) {
+  return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
+}
+
+std::string count_of(const curves::CurveSet& set) {
+  return count_of(set.curves.size(), "curve") + ", " + count_of(set.surfaces.size(), "surface");
+}
+
+/// What a file holds.
+Result<std::string> checked(const std::string& path) {
+  const auto text = base::read_file(path, base::kMaxDocumentBytes);
+  if (!text) return text.error();
+  const auto root = base::parse_document(*text, path);
+  if (!root) return root.error();
+  const auto kind = curves::read_file_kind(*root, path);
+  if (!kind) return kind.error();
+  if (*kind == curves::FileKind::curve) {
+    const auto set = curves::parse_curves(*text, path);
+    if (!set) return set.error();
+    return "curve file, " + count_of(*set);
+  }
+  const auto bank = engine::read_bank(path);
+  if (!bank) return bank.error();
+  if (*kind == curves::FileKind::bank) {
+    return "bank, " + std::to_string(bank->patches.size()) + " patches, " +
+           std::to_string(bank->entries.size()) + " entries";
+  }
+  const engine::PatchSpec& patch = bank->patches.front();
+  return "patch, " + count_of(patch.curves) + ", " + count_of(patch.maps.size(), "map");
+}
+
+}  // namespace
+
+std::string check_text(const CurveOptions& options, bool& failed) {
+  std::string text;
+  for (const std::string& path : options.files) {
+    const auto what = checked(path);
+    if (what) {
+      text += path + ": ok: " + *what + "\n";
+      continue;
+    }
+    failed = true;
+    Error error = what.error();
+    if (error.source.empty()) error.source = path;
+    std::fprintf(stderr, "%s\n", error.to_string().c_str());
+  }
+  return text;
+}
+
+}  // namespace knotwave::curve_app

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// FILE[#name] to a curve or surface.
+#pragma once
+#include <string>
+#include <variant>
+
+#include "knotwave/curves/curve_file.h"
+
+namespace knotwave::curve_app {
+
+/// Every curve and surface of a curve file or a patch. Errors: those of the file; unsupported for
+/// files that hold none (banks, envelope patches).
+Result<curves::CurveSet> read_set(const std::string& path);
+
+/// "file.toml#name" as its two halves; no name without a '#'.
+struct Reference {
+  std::string path;
+  std::string name;
+};
+Reference reference_of(const std::string& text);
+
+using Item = std::variant<curves::NurbsCurve, curves::NurbsSurface>;
+/// The one meant. Errors: as above; unknown_name with the nearest name; usage when the file holds
+/// several and none is named.
+Result<Item> read_item(const std::string& text);
+
+}  // namespace knotwave::curve_app

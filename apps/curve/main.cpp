@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// knotwave-curve: checks, describes, evaluates and draws curves. Messages and exit codes.
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+#include "options.h"
+#include "verbs.h"
+
+namespace {
+
+using namespace knotwave;
+using namespace knotwave::curve_app;
+
+int say(const Error& error) {
+  const char* prefix = error.source.empty() ? "knotwave-curve: " : "";
+  std::fprintf(stderr, "%s%s\n", prefix, error.to_string().c_str());
+  return error.code == ErrorCode::usage ? kExitUsage : kExitFailure;
+}
+
+int print(const std::string& text) {
+  const bool written =
+      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  return written ? kExitOk : kExitFailure;
+}
+
+int print(const Result<std::string>& text) { return text ? print(*text) : say(text.error()); }
+
+int run(const CurveOptions& options) {
+  switch (options.verb) {
+    case Verb::check: {
+      bool failed = false;
+      const int code = print(check_text(options, failed));
+      return failed ? kExitFailure : code;
+    }
+    case Verb::info:
+      return print(info_text(options));
+    case Verb::eval:
+      return print(eval_text(options));
+    case Verb::plot:
+      return print(plot_text_or_file(options));
+  }
+  return kExitUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a failed write
+  try {
+    const CommandLine line = read_command_line(argc, argv);
+    return line.exit_code ? *line.exit_code : run(line.options);
+  } catch (const std::bad_alloc&) {
+    std::fputs("knotwave-curve: error: out of memory\n", stderr);
+    return kExitFailure;
+  }
+}

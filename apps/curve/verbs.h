@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// What knotwave-curve does: one function a command. Each returns the text for standard output, or
+// what is wrong.
+#pragma once
+#include <string>
+
+#include "knotwave/base/result.h"
+
+#include "options.h"
+
+namespace knotwave::curve_app {
+
+/// One line a good file; the faults of the others go to standard error. Sets `failed`.
+std::string check_text(const CurveOptions& options, bool& failed);
+Result<std::string> info_text(const CurveOptions& options);
+Result<std::string> eval_text(const CurveOptions& options);
+/// Writes the picture, or gives it as text.
+Result<std::string> plot_text_or_file(const CurveOptions& options);
+
+/// 17 significant digits: reads back as the same double.
+std::string digits17(double value);
+/// A JSON string with its quotes.
+std::string json_string(const std::string& text);
+
+}  // namespace knotwave::curve_app

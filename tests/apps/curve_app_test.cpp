@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// knotwave-curve as a user runs it.
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "knotwave/base/file.h"
+#include "knotwave/curves/curve_file.h"
+
+#include "support/program.h"
+
+namespace {
+
+using namespace knotwave;
+using support::ProgramRun;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr const char* kCurves = R"(format = 1
+kind = "curve"
+
+[curves.ramp]
+degree = 1
+points = [0, 1]
+
+[curves.arc]
+degree  = 2
+points  = [[1, 0], [1, 1], [0, 1]]
+weights = [1, 1, 2]
+
+[curves.wave]
+degree   = 3
+periodic = true
+points   = [0, 1, 0, -1]
+
+[surfaces.sheet]
+degree_u = 1
+degree_v = 1
+points   = [[0, 1], [2, 7]]
+)";
+
+class CurveApp : public testing::Test {
+ protected:
+  void SetUp() override {
+    file_ = folder_.file("shapes.toml");
+    ASSERT_TRUE(base::write_file(file_, kCurves));
+  }
+  ProgramRun run(std::vector<std::string> words) {
+    words.insert(words.begin(), "knotwave-curve");
+    return support::run_program(words);
+  }
+  support::ScratchFolder folder_;
+  std::string file_;
+};
+
+TEST_F(CurveApp, SaysItsVersionAndItsHelp) {
+  EXPECT_THAT(run({"--version"}).out, StartsWith("knotwave-curve "));
+  for (const char* word : {"check", "info", "eval", "plot"}) {
+    EXPECT_THAT(run({"--help"}).out, HasSubstr(word));
+    const ProgramRun help = run({word, "--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.out, HasSubstr("FILE"));
+  }
+}
+
+TEST_F(CurveApp, ChecksEveryKindOfFileThatIsShipped) {
+  std::vector<std::string> files = {"check"};
+  for (const char* folder : {"curves", "patches", "banks"}) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(KNOTWAVE_SOURCE_DIR "/examples/" + std::string(folder))) {
+      if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
+    }
+  }
+  ASSERT_GT(files.size(), 20u);
+  const ProgramRun checked = run(files);
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    EXPECT_THAT(checked.out, HasSubstr(files[i] + ": ok: "));
+  }
+}
+
+TEST_F(CurveApp, CheckNamesThePlaceOfAFaultAndGoesOn) {
+  const std::string bad = folder_.file("bad.toml");
+  ASSERT_TRUE(base::write_file(bad,
+                               "format = 1\nkind = \"curve\"\n[curves.x]\ndegree = 1\n"
+                               "points = [0, 1, 2]\nknots = [0, 0, 0.5, 0.4, 1]\n"));
+  const ProgramRun checked = run({"check", bad, file_});
+  EXPECT_EQ(checked.exit_code, 1);
+  EXPECT_EQ(checked.err,
+            bad + ":6:20: error: curve 'x': knot 3 (0.4) is below knot 2 (0.5)\n");
+  EXPECT_EQ(checked.out, file_ + ": ok: curve file, 3 curves, 1 surface\n");
+  EXPECT_EQ(run({"check", folder_.file("none.toml")}).exit_code, 1);
+}
+
+TEST_F(CurveApp, EvalPrintsTabsAnd17Digits) {
+  EXPECT_EQ(run({"eval", file_ + "#arc", "--at", "0,0.5,1"}).out,
+            "0\t1\t0\n"
+            "0.5\t0.59999999999999998\t0.80000000000000004\n"
+            "1\t0\t1\n");
+  EXPECT_EQ(run({"eval", file_ + "#arc", "--at", "0", "--derivatives", "2"}).out,
+            "0\t1\t0\t0\t2\t-4\t0\n");
+  EXPECT_EQ(run({"eval", file_ + "#sheet", "--at", "0.5:0.5,1:1"}).out,
+            "0.5\t0.5\t2.5\n1\t1\t7\n");
+  EXPECT_EQ(run({"eval", file_ + "#sheet", "--at", "0.5:0.5", "--derivatives", "2"}).out,
+            "0.5\t0.5\t2.5\t3\t4\t0\t4\t0\n");
+}
+
+TEST_F(CurveApp, EvalGridHasNPlusOneRowsWithExactEnds) {
+  const ProgramRun grid = run({"eval", file_ + "#ramp", "--grid", "7"});
+  std::istringstream lines(grid.out);
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(lines, line);) rows.push_back(line);
+  ASSERT_EQ(rows.size(), 8u);
+  EXPECT_EQ(rows.front(), "0\t0");
+  EXPECT_EQ(rows.back(), "1\t1");
+}
+
+// What eval prints, read back, is what the library computes.
+TEST_F(CurveApp, EvalReadsBackToTheSameDoubles) {
+  const auto set = curves::parse_curves(kCurves, "text");
+  ASSERT_TRUE(set);
+  const auto* wave = set->find_curve("wave");
+  std::istringstream numbers(run({"eval", file_ + "#wave", "--grid", "100"}).out);
+  int rows = 0;
+  for (double u = 0, value = 0; numbers >> u >> value; ++rows) {
+    double expected;
+    wave->evaluate(u, std::span(&expected, 1));
+    EXPECT_EQ(value, expected);
+  }
+  EXPECT_EQ(rows, 101);
+}
+
+TEST_F(CurveApp, JsonIsReadByAnotherReader) {
+  const std::string reader =
+      "import json, subprocess, sys\n"
+      "d = json.loads(subprocess.check_output([sys.argv[1], 'eval', sys.argv[2] + '#arc', '--at',"
+      " '0', '--derivatives', '1', '--json']))\n"
+      "assert d == {'name': 'arc', 'rows': [{'u': 0, 'value': [1, 0], 'derivatives': [[0, 2]]}]}, d\n"
+      "d = json.loads(subprocess.check_output([sys.argv[1], 'info', sys.argv[2], '--json']))\n"
+      "assert [x.get('curve', x.get('surface')) for x in d] == ['ramp', 'arc', 'wave', 'sheet'], d\n"
+      "assert d[1]['rational'] is True and d[1]['weights'] == [1, 2], d\n";
+  const ProgramRun read = support::run_program(
+      {"/usr/bin/python3", "-c", reader, KNOTWAVE_BIN_DIR "/knotwave-curve", file_});
+  EXPECT_EQ(read.exit_code, 0) << read.err;
+}
+
+TEST_F(CurveApp, InfoTellsWhatACurveIs) {
+  const std::string arc = run({"info", file_ + "#arc"}).out;
+  EXPECT_THAT(arc, HasSubstr("degree         2\n"));
+  EXPECT_THAT(arc, HasSubstr("weights        1 .. 2\n"));
+  EXPECT_THAT(arc, HasSubstr("knots          0 x3, 1 x3\n"));
+  EXPECT_THAT(arc, HasSubstr("function of x  no\n"));
+  EXPECT_THAT(run({"info", file_ + "#wave"}).out, HasSubstr("smoothness   C2\n"));
+}
+
+TEST_F(CurveApp, PlotWritesTheFileItsEndingAsksForOrText) {
+  const std::string svg = folder_.file("a.svg"), png = folder_.file("a.png");
+  EXPECT_EQ(run({"plot", file_ + "#arc", "-o", svg}).exit_code, 0);
+  EXPECT_THAT(*base::read_file(svg, 1 << 24), StartsWith("<svg "));
+  EXPECT_EQ(run({"plot", file_ + "#sheet", "-o", png, "--size", "400x300"}).out,
+            png + ": sheet, 400 x 300\n");
+  EXPECT_THAT(*base::read_file(png, 1 << 24), StartsWith("\x89PNG"));
+  EXPECT_THAT(run({"plot", file_ + "#wave"}).out, StartsWith("wave  degree 3, 4 points, periodic\n"));
+}
+
+TEST_F(CurveApp, FaultsOfUseEndWith2AndSayWhatWasMeant) {
+  const auto says = [&](std::vector<std::string> words, const std::string& message) {
+    const ProgramRun wrong = run(words);
+    EXPECT_EQ(wrong.exit_code, 2) << message;
+    EXPECT_EQ(wrong.out, "");
+    EXPECT_THAT(wrong.err, HasSubstr(message));
+  };
+  says({}, "Try 'knotwave-curve --help'");
+  says({"chek", file_}, "unknown command 'chek'; did you mean 'check'?");
+  says({"eval", file_ + "#arc", "--gird", "4"}, "unknown option '--gird'; did you mean '--grid'?");
+  says({"eval", file_ + "#arc"}, "where? --at LIST or --grid N, one of them");
+  says({"eval", file_ + "#arc", "--at", "0", "--grid", "4"}, "one of them");
+  says({"eval", file_ + "#arc", "--at", "0,x"}, "--at: 'x' is neither a number u nor a pair u:v");
+  says({"eval", file_ + "#arc", "--at", "0:1"}, "--at u:v is for surfaces");
+  says({"eval", file_ + "#sheet", "--at", "0"}, "a surface takes --at u:v");
+  says({"eval", file_, "--at", "0"}, "which one? add #NAME; there are ramp, arc, wave, sheet");
+  says({"plot", file_ + "#arc", "-o", "a.jpg"}, "'a.jpg' ends neither in .svg nor in .png");
+  says({"plot", file_ + "#arc", "-o", "a.png", "--size", "20"}, "--size: '20' is not WIDTHxHEIGHT");
+}
+
+TEST_F(CurveApp, FailuresEndWith1AndNameTheFile) {
+  const auto says = [&](std::vector<std::string> words, const std::string& message) {
+    const ProgramRun failed = run(words);
+    EXPECT_EQ(failed.exit_code, 1) << message;
+    EXPECT_EQ(failed.out, "");
+    EXPECT_EQ(failed.err, message + "\n");
+  };
+  says({"eval", file_ + "#ark", "--at", "0"},
+       file_ + ": error: there is no 'ark'; did you mean 'arc'?");
+  says({"eval", file_ + "#nothing", "--at", "0"},
+       file_ + ": error: there is no 'nothing'; there are ramp, arc, wave, sheet");
+  says({"eval", file_ + "#arc", "--at", "1.5"}, file_ + "#arc: error: u = 1.5 is outside 0..1");
+  says({"eval", file_ + "#sheet", "--at", "0:2"}, file_ + "#sheet: error: v = 2 is outside 0..1");
+  EXPECT_EQ(run({"plot", file_ + "#arc", "-o", folder_.file("none/a.svg")}).exit_code, 1);
+}
+
+}  // namespace

@@ -53,7 +53,8 @@ Result<Item> read_item(const std::string& text) {
   if (const auto* surface = set->find_surface(reference.name)) return Item(*surface);
   error.code = ErrorCode::unknown_name;
   const std::string near = base::suggestion(reference.name, set->names());
-  error.message = "there is no '" + reference.name + "'" + (near.empty() ? "; there are " + names : near);
+  error.message =
+      "there is no '" + reference.name + "'" + (near.empty() ? "; there are " + names : near);
   return error;
 }
 

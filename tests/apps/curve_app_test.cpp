@@ -70,8 +70,8 @@ TEST_F(CurveApp, SaysItsVersionAndItsHelp) {
 TEST_F(CurveApp, ChecksEveryKindOfFileThatIsShipped) {
   std::vector<std::string> files = {"check"};
   for (const char* folder : {"curves", "patches", "banks"}) {
-    for (const auto& entry :
-         std::filesystem::directory_iterator(KNOTWAVE_SOURCE_DIR "/examples/" + std::string(folder))) {
+    for (const auto& entry : std::filesystem::directory_iterator(KNOTWAVE_SOURCE_DIR "/examples/" +
+                                                                 std::string(folder))) {
       if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
     }
   }
@@ -90,8 +90,7 @@ TEST_F(CurveApp, CheckNamesThePlaceOfAFaultAndGoesOn) {
                                "points = [0, 1, 2]\nknots = [0, 0, 0.5, 0.4, 1]\n"));
   const ProgramRun checked = run({"check", bad, file_});
   EXPECT_EQ(checked.exit_code, 1);
-  EXPECT_EQ(checked.err,
-            bad + ":6:20: error: curve 'x': knot 3 (0.4) is below knot 2 (0.5)\n");
+  EXPECT_EQ(checked.err, bad + ":6:21: error: curve 'x': knot 3 (0.4) is below knot 2 (0.5)\n");
   EXPECT_EQ(checked.out, file_ + ": ok: curve file, 3 curves, 1 surface\n");
   EXPECT_EQ(run({"check", folder_.file("none.toml")}).exit_code, 1);
 }
@@ -103,8 +102,7 @@ TEST_F(CurveApp, EvalPrintsTabsAnd17Digits) {
             "1\t0\t1\n");
   EXPECT_EQ(run({"eval", file_ + "#arc", "--at", "0", "--derivatives", "2"}).out,
             "0\t1\t0\t0\t2\t-4\t0\n");
-  EXPECT_EQ(run({"eval", file_ + "#sheet", "--at", "0.5:0.5,1:1"}).out,
-            "0.5\t0.5\t2.5\n1\t1\t7\n");
+  EXPECT_EQ(run({"eval", file_ + "#sheet", "--at", "0.5:0.5,1:1"}).out, "0.5\t0.5\t2.5\n1\t1\t7\n");
   EXPECT_EQ(run({"eval", file_ + "#sheet", "--at", "0.5:0.5", "--derivatives", "2"}).out,
             "0.5\t0.5\t2.5\t3\t4\t0\t4\t0\n");
 }
@@ -139,9 +137,11 @@ TEST_F(CurveApp, JsonIsReadByAnotherReader) {
       "import json, subprocess, sys\n"
       "d = json.loads(subprocess.check_output([sys.argv[1], 'eval', sys.argv[2] + '#arc', '--at',"
       " '0', '--derivatives', '1', '--json']))\n"
-      "assert d == {'name': 'arc', 'rows': [{'u': 0, 'value': [1, 0], 'derivatives': [[0, 2]]}]}, d\n"
+      "assert d == {'name': 'arc', 'rows': [{'u': 0, 'value': [1, 0], 'derivatives': [[0, 2]]}]}, "
+      "d\n"
       "d = json.loads(subprocess.check_output([sys.argv[1], 'info', sys.argv[2], '--json']))\n"
-      "assert [x.get('curve', x.get('surface')) for x in d] == ['ramp', 'arc', 'wave', 'sheet'], d\n"
+      "assert [x.get('curve', x.get('surface')) for x in d] == ['ramp', 'arc', 'wave', 'sheet'], "
+      "d\n"
       "assert d[1]['rational'] is True and d[1]['weights'] == [1, 2], d\n";
   const ProgramRun read = support::run_program(
       {"/usr/bin/python3", "-c", reader, KNOTWAVE_BIN_DIR "/knotwave-curve", file_});
@@ -164,7 +164,8 @@ TEST_F(CurveApp, PlotWritesTheFileItsEndingAsksForOrText) {
   EXPECT_EQ(run({"plot", file_ + "#sheet", "-o", png, "--size", "400x300"}).out,
             png + ": sheet, 400 x 300\n");
   EXPECT_THAT(*base::read_file(png, 1 << 24), StartsWith("\x89PNG"));
-  EXPECT_THAT(run({"plot", file_ + "#wave"}).out, StartsWith("wave  degree 3, 4 points, periodic\n"));
+  EXPECT_THAT(run({"plot", file_ + "#wave"}).out,
+              StartsWith("wave  degree 3, 4 points, periodic\n"));
 }
 
 TEST_F(CurveApp, FaultsOfUseEndWith2AndSayWhatWasMeant) {

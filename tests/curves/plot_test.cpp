@@ -50,7 +50,7 @@ TEST(Plot, SvgHoldsCurvePolygonPointsWeightsAndKnots) {
   EXPECT_THAT(svg, HasSubstr("degree 2, rational, 4 points"));
   EXPECT_THAT(svg, HasSubstr("stroke-dasharray"));  // the control polygon
   EXPECT_EQ(count_of(svg, ">w "), 4);
-  EXPECT_EQ(count_of(svg, "stroke=\"#0a5cd6\" stroke-width=\"3\""), 1);   // the curve
+  EXPECT_EQ(count_of(svg, "stroke=\"#0a5cd6\" stroke-width=\"3\""), 1);  // the curve
   EXPECT_EQ(count_of(svg, "fill=\"#f47b20\" fill-opacity=\"0.9\""), 4);  // its points
   EXPECT_EQ(count_of(svg, "nan") + count_of(svg, "inf"), 0);
   curves::PlotOptions plain;

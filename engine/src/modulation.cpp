@@ -86,7 +86,6 @@ void Modulation::start(const PatchProgram& patch, const NoteContext& note, base:
   }
   for (std::size_t i = 0; i < patch.envelopes().size(); ++i) envelopes_[i].reset();
   limited_joins_seen_ = 0;
-  for (const dsp::Envelope& envelope : envelopes_) limited_joins_seen_ += envelope.limited_joins();
   for (std::size_t i = 0; i < patch.lfos().size(); ++i) {
     const dsp::LfoSpec& spec = patch.lfos()[i].spec;
     base::RandomStream stream = note.random;

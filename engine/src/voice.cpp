@@ -50,9 +50,9 @@ void Voice::start(const Start& start, const TempoClock& tempo) KNOTWAVE_RT {
     static_gain_ *= base::db_to_gain(kSoftPedalDb);
   }
   const double pitch = key_pitch_of_note();
-  glide_.reset(pitch);
+  glide_.reset(start.glides ? start.glide_from : pitch);
   if (start.glides) {
-    glide_.start(start.glide_from, pitch, start.time, patch_->spec().glide_s * start.rate_hz);
+    glide_.start(patch_->glide_curve(), pitch, start.time, patch_->spec().glide_s, start.rate_hz);
   }
   bend_.reset(bend_semitones(start.note, patch_->spec().bend_semitones),
               samples_of(kBendGlideSeconds, start.rate_hz));
@@ -84,9 +84,8 @@ void Voice::play(const NoteContext& note, base::SampleTime time, bool joins, boo
   start_.note = note;
   start_.note.velocity = velocity;
   start_.note.random = random;
-  const double from = glide_.pitch_at(sample, patch_->glide_curve());
-  const double to = key_pitch_of_note();
-  glide_.start(from, to, time, glides ? patch_->spec().glide_s * start_.rate_hz : 0);
+  glide_.start(patch_->glide_curve(), key_pitch_of_note(), time,
+               glides ? patch_->spec().glide_s : 0, start_.rate_hz);
   detached_ = false;
   if (!joins) return;
   velocity_gain_.set_target(velocity_gain(), sample);
@@ -147,10 +146,7 @@ void Voice::render_pitch(std::int64_t first, std::size_t n, VoiceScratch& scratc
                          Signal& key_pitch, Signal& pitch) KNOTWAVE_RT {
   key_pitch = {glide_.target(), nullptr};
   if (!glide_.is_still(first)) {
-    for (std::size_t i = 0; i < n; ++i) {
-      scratch.glide[i] =
-          glide_.pitch_at(first + static_cast<std::int64_t>(i), patch_->glide_curve());
-    }
+    glide_.render(patch_->glide_curve(), first, std::span(scratch.glide).first(n));
     key_pitch.values = scratch.glide.data();
   }
   Signal bend{bend_.target(), nullptr};

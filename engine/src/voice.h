@@ -6,13 +6,13 @@
 
 #include "knotwave/base/time.h"
 #include "knotwave/dsp/filter.h"
+#include "knotwave/dsp/glide.h"
 #include "knotwave/dsp/oscillator.h"
 #include "knotwave/dsp/shaper.h"
 #include "knotwave/dsp/smoother.h"
 #include "knotwave/engine/patch_program.h"
 
 #include "fade.h"
-#include "glide.h"
 #include "modulation.h"
 #include "note_context.h"
 
@@ -103,7 +103,7 @@ class Voice {
   double level_ = 0;
   bool done_ = true;
   bool detached_ = false;
-  Glide glide_;
+  dsp::Glide glide_;
   Fade fade_;
   dsp::Smoother bend_, velocity_gain_;
   Modulation modulation_;

@@ -70,8 +70,8 @@ void Voice::render_oscillator(std::size_t index, std::size_t n, const Signal& pi
   Signal own = mapped(part.is_fixed ? fixed : pitch, n, scratch.source_pitch,
                       [&](double x) { return x + part.semitones; });
   own = sum(own, slots[kSlotSourcePitch + index], n, scratch.source_pitch);
-  const Signal hz = mapped(own, n, scratch.source_pitch,
-                           [](double note) { return base::note_to_hz(note); });
+  const Signal hz =
+      mapped(own, n, scratch.source_pitch, [](double note) { return base::note_to_hz(note); });
   if (hz.is_constant()) {
     std::fill_n(scratch.increments.begin(), n, base::phase_increment(hz.constant, start_.rate_hz));
   } else {
@@ -99,7 +99,7 @@ void Voice::render_oscillator(std::size_t index, std::size_t n, const Signal& pi
   }
   oscillators_[index].render(*part.tables, std::span(scratch.increments).first(n), positions,
                              phases, std::span(scratch.source_left).first(n),
-                             std::span(scratch.source_right).first(n));
+                             std::span(scratch.source_right).first(patch_->is_mono() ? 0 : n));
   mix_source(static_cast<int>(index), part, n, scratch);
 }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Fade, glide, tempo clock and signals: what moves while a voice sounds.
+// Fade, tempo clock and signals: what moves while a voice sounds.
 #include <gtest/gtest.h>
 
 #include "chunk_signal.h"
 #include "fade.h"
-#include "glide.h"
 #include "tempo_clock.h"
 
 namespace knotwave::engine {
@@ -30,26 +29,6 @@ TEST(Fade, InAndOutOfTheSameLengthAddUpToOne) {
   in.start(Fade::Direction::in, 7, 960);
   out.start(Fade::Direction::out, 7, 960);
   for (int i = 0; i < 1000; ++i) EXPECT_NEAR(in.at(i) + out.at(i), 1, 1e-15);
-}
-
-TEST(Glide, TakesTheSameTimeAtEveryRate) {
-  for (const double rate_hz : {44100.0, 48000.0, 96000.0, 384000.0}) {
-    Glide glide;
-    glide.start(60, 72, {0, 0}, 0.1 * rate_hz);
-    // 1/30 s and 2/30 s are whole samples at all four rates.
-    EXPECT_NEAR(glide.pitch_at(static_cast<std::int64_t>(rate_hz / 30), nullptr),
-                60 + 12 * 0.20987654320987653, 1e-12);
-    EXPECT_NEAR(glide.pitch_at(static_cast<std::int64_t>(rate_hz / 15), nullptr),
-                60 + 12 * 0.7901234567901234, 1e-12);
-    EXPECT_EQ(glide.pitch_at(static_cast<std::int64_t>(rate_hz), nullptr), 72.0);
-  }
-}
-
-TEST(Glide, WithoutTimeItIsThereAtOnce) {
-  Glide glide;
-  glide.start(60, 72, {10, 0}, 0);
-  EXPECT_EQ(glide.pitch_at(10, nullptr), 72.0);
-  EXPECT_TRUE(glide.is_still(10));
 }
 
 TEST(TempoClock, CountsQuarterNotesAcrossTempoChanges) {

@@ -144,6 +144,24 @@ to = "b.pitch"
 depth = 0.1
 )";
 
+/// A loudness that ends at a thousandth and a sound that ends before its key is up.
+inline constexpr std::string_view kEndsAboveZero = R"(
+format = 1
+kind = "patch"
+name = "Struck"
+velocity_db = 18
+[curves.ring]
+degree = 4
+points = [1, 0.15962, 0.030761, 0.0058833, 0.001]
+weights = [0.033544, 0.068924, 0.15018, 0.35327, 1]
+[oscillators.a]
+wave = "triangle"
+[envelopes.amp]
+curve = "ring"
+seconds = 0.05
+velocity_time = 0.3
+)";
+
 /// `lines` are put before the tables of `patch`: mode, polyphony, glide.
 inline std::string with(std::string_view patch, std::string_view lines) {
   std::string text(patch);

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// The same journal gives the same bits for any block size and number of threads.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "knotwave/base/random.h"
+
+#include "scenes.h"
+#include "support/seed.h"
+
+namespace knotwave::engine {
+namespace {
+
+using namespace scenes;  // NOLINT: the words of these tests
+
+/// Notes, bends, wheels, pedals, tempo and program changes on all channels at odd times.
+std::vector<Event> busy_journal(std::uint64_t seed, int count, std::int64_t frames) {
+  const base::RandomStream random{seed, 0, 77};
+  std::vector<Event> events;
+  for (int i = 0; i < count; ++i) {
+    const auto draw = [&](int which, int below) {
+      return static_cast<int>(random.unit(static_cast<std::uint64_t>(i * 8 + which)) * below);
+    };
+    const std::int64_t sample = static_cast<std::int64_t>(draw(0, 1 << 30)) * frames >> 30;
+    const auto fraction =
+        static_cast<std::uint32_t>(random.bits(static_cast<std::uint64_t>(i * 8 + 1)));
+    const int channel = draw(2, 16), kind = draw(3, 12);
+    Event event = midi(sample, 0x90 | channel, 36 + draw(4, 48), 1 + draw(5, 127), fraction);
+    if (kind >= 5) event.midi.bytes[0] = static_cast<std::uint8_t>(0x80 | channel);
+    constexpr int kControls[] = {1, 7, 10, 11, 64, 66, 67, 74};
+    if (kind == 8) {
+      event = midi(sample, 0xB0 | channel, kControls[draw(4, 8)], draw(5, 128), fraction);
+    } else if (kind == 9) {
+      event = midi(sample, 0xE0 | channel, draw(4, 128), draw(5, 128), fraction);
+    } else if (kind == 10) {
+      event = midi(sample, 0xD0 | channel, draw(4, 128), 0, fraction);
+    } else if (kind == 11) {
+      event = of_kind(sample, Event::Kind::tempo);
+      event.microseconds_per_quarter = 200000 + static_cast<std::uint32_t>(draw(4, 800000));
+    }
+    events.push_back(event);
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.time() < b.time(); });
+  return events;
+}
+
+void expect_same(const Sound& expected, const Sound& found, const std::string& what) {
+  ASSERT_EQ(expected.left.size(), found.left.size());
+  for (std::size_t i = 0; i < expected.left.size(); ++i) {
+    ASSERT_EQ(expected.left[i], found.left[i]) << what << ", sample " << i;
+    ASSERT_EQ(expected.right[i], found.right[i]) << what << ", sample " << i;
+  }
+}
+
+struct Case {
+  const char* name;
+  std::string patch;
+};
+
+class Determinism : public testing::TestWithParam<Case> {};
+
+TEST_P(Determinism, AnyBlockSizeGivesTheSameBits) {
+  const auto bank = bank_from(GetParam().patch);
+  constexpr std::int64_t kFrames = 12000;
+  const auto events = busy_journal(support::test_seed(), 160, kFrames);
+  const auto render = [&](std::size_t block) {
+    const auto engine = engine_for(*bank, {.max_voices = 10});
+    return play(*engine, events, kFrames, block);
+  };
+  const Sound expected = render(4096);
+  EXPECT_GT(peak(expected.left), 0.01);
+  for (const std::size_t block : {1UL, 7UL, 64UL, 100UL, 256UL, 12000UL}) {
+    expect_same(expected, render(block), "block " + std::to_string(block));
+  }
+}
+
+TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBits) {
+  const auto bank = bank_from(GetParam().patch);
+  constexpr std::int64_t kFrames = 20000;
+  const auto events = busy_journal(support::test_seed() + 1, 200, kFrames);
+  const auto render = [&](int threads) {
+    const auto engine = engine_for(*bank, {.max_voices = 24, .threads = threads});
+    return play(*engine, events, kFrames, 512);
+  };
+  const Sound expected = render(1);
+  for (const int threads : {2, 3, 4}) {
+    expect_same(expected, render(threads), std::to_string(threads) + " threads");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Patches, Determinism,
+    testing::Values(Case{"Rich", std::string(kRich)}, Case{"Mono", with(kRich, "mode = \"mono\"")},
+                    Case{"Legato", with(kRich, "mode = \"legato\"\npriority = \"low\"")},
+                    Case{"Plain", std::string(kPlain)},
+                    Case{"EndsAboveZero", std::string(kEndsAboveZero)}),
+    [](const testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });
+
+TEST(DeterminismOfSeeds, TheEngineSeedChangesWhatIsRandomAndNothingElse) {
+  const auto random = bank_from(kRich), fixed = bank_from(kPlain);
+  const auto render = [](const BankProgram& bank, std::uint64_t seed) {
+    return play(*engine_for(bank, {.seed = seed}), {on(0, 0, 60)}, 2000);
+  };
+  EXPECT_FALSE(render(*random, 1) == render(*random, 2));
+  EXPECT_TRUE(render(*fixed, 1) == render(*fixed, 2));
+}
+
+}  // namespace
+}  // namespace knotwave::engine

@@ -9,6 +9,17 @@ namespace {
 
 constexpr std::size_t kChunk = 64;
 
+// The brake, for 0 <= x < 1: value 0 and slope 1 at 0, dies away with two derivatives. Its largest
+// value, at x = 1/4, is kBrakePeak.
+constexpr double kBrakePeak = 27.0 / 256;
+constexpr double brake(double x) { return x * (1 - x) * (1 - x) * (1 - x); }
+constexpr double brake_slope(double x) { return (1 - x) * (1 - x) * (1 - 4 * x); }
+
+// How long the corner is rounded where a held curve goes on: 10 ms, but no more than a 32nd of what
+// is left of it.
+constexpr double kRoundedSeconds = 0.01;
+constexpr double kRoundedPart = 32;
+
 double limited_scale(double scale) {
   if (!(scale == scale)) return 1;
   return std::clamp(scale, 1e-4, 1e4);
@@ -66,6 +77,11 @@ Envelope::Now Envelope::now(const EnvelopeProgram& program,
     now.slope_per_sample +=
         (deltas_.dp0 * basis.slope_at_u(age, 0) + deltas_.dp1 * basis.slope_at_u(age, 1)) *
         u_per_sample_;
+    const double x = (age - join_->u_join) / brake_u_;
+    if (brake_slope_ != 0 && x < 1) {
+      now.value = rounded(now.value, x);
+      now.slope_per_sample += brake_slope_ * brake_slope(x) * u_per_sample_;
+    }
   }
   return now;
 }
@@ -79,16 +95,60 @@ void Envelope::join(const EnvelopeProgram& program, const curves::JoinProgram& s
   const curves::CurveProgram& curve = program.program();
   const auto controls = last_controls(program);
   const double value = curve.at_u(section.u_join, 0, controls);
-  if (program.joins_slope()) {
-    deltas_ = section.join_from(value, curve.slope_at_u(section.u_join, 0, controls), from.value,
-                                from.slope_per_sample / u_per_sample_);
-  } else {
-    deltas_ = section.join_c0_from(value, from.value);
-  }
+  const double slope = curve.slope_at_u(section.u_join, 0, controls);
+  const double wanted = from.slope_per_sample / u_per_sample_;
+  deltas_ = program.joins_slope() ? section.join_from(value, slope, from.value, wanted)
+                                  : section.join_c0_from(value, from.value);
   if (deltas_.limited) ++limited_joins_;
+  // A 2-D curve that begins vertically has no slope to keep.
+  const bool lacks = program.joins_slope() ? deltas_.limited && section.moves_p1 : true;
+  const double kept = slope + deltas_.dp0 * section.basis.slope_at_u(section.u_join, 0) +
+                      deltas_.dp1 * section.basis.slope_at_u(section.u_join, 1);
+  set_brake(section, from.value, kept, lacks ? wanted : kept, section.u_basis_end - section.u_join);
+  start(section, time);
+}
+
+// Held where the section starts: as drawn, and only the corner is rounded.
+void Envelope::let_go(const EnvelopeProgram& program, const Now& from,
+                      base::SampleTime time) KNOTWAVE_RT {
+  const curves::JoinProgram& section = program.release_join();
+  const double slope = program.program().slope_at_u(section.u_join, 0, last_controls(program));
+  const double longest =
+      std::min((program.program().u_max() - section.u_join) / kRoundedPart, rounding_u_);
+  deltas_ = {};
+  set_brake(section, from.value, slope, 0, std::min(longest, section.u_basis_end - section.u_join));
+  start(section, time);
+}
+
+void Envelope::start(const curves::JoinProgram& section, base::SampleTime time) KNOTWAVE_RT {
   join_ = &section;
   run_from(section.u_join, time);
   age_ = place_;
+}
+
+// The slope of the section is `kept`; what lacks to `wanted` is played by a brake of such a length
+// that the sum stays inside the hull. With room r from the value to the hull, the section stays
+// r R0(u) away from it, because its other points are inside, and R0(u) >= 1 - f u where R0 is
+// convex: so a brake of peak b that ends by u with b + r f u <= r is safe. Without weights it
+// always is; otherwise the clamp in rounded() has the last word.
+void Envelope::set_brake(const curves::JoinProgram& section, double value, double kept,
+                         double wanted, double longest) KNOTWAVE_RT {
+  brake_slope_ = wanted - kept;
+  brake_u_ = longest;
+  const double room = brake_slope_ > 0 ? section.high - value : value - section.low;
+  const double fall = -section.basis.slope_at_u(section.u_join, 0);
+  const double steepest = std::abs(brake_slope_) * kBrakePeak + room * fall;
+  if (room > 0 && steepest > 0) {
+    brake_u_ = std::min(room / steepest, longest);
+  } else {
+    brake_slope_ = 0;
+  }
+}
+
+// A joined value with the brake, at an age where it still plays.
+double Envelope::rounded(double value, double x) const KNOTWAVE_RT {
+  const double y = value + brake_slope_ * brake_u_ * brake(x);
+  return std::clamp(y, join_->low, join_->high);
 }
 
 void Envelope::gate_on(const EnvelopeProgram& program, base::SampleTime time, double rate_hz,
@@ -96,7 +156,9 @@ void Envelope::gate_on(const EnvelopeProgram& program, base::SampleTime time, do
   const Now from = now(program, time);
   const bool joins = !from.ended && program.spec().retrigger == EnvelopeSpec::Retrigger::current;
   stage_ = Stage::gate_open;
-  u_per_sample_ = program.u_per_second() / (rate_hz * limited_scale(time_scale));
+  const double u_per_second = program.u_per_second() / limited_scale(time_scale);
+  u_per_sample_ = u_per_second / rate_hz;
+  rounding_u_ = kRoundedSeconds * u_per_second;
   if (joins) {
     join(program, program.start_join(), from, time);
   } else {
@@ -112,8 +174,7 @@ void Envelope::gate_off(const EnvelopeProgram& program, base::SampleTime time) K
   if (!program.has_release()) {
     run_from(from.place_u, time);
   } else if (from.held && !from.joining && from.place_u == program.release_join().u_join) {
-    join_ = nullptr;
-    run_from(from.place_u, time);
+    let_go(program, from, time);
   } else {
     join(program, program.release_join(), from, time);
   }
@@ -185,6 +246,12 @@ void Envelope::add_join(std::int64_t first, std::span<double> out) KNOTWAVE_RT {
   join_->basis.render(run, std::span(basis0).first(n), join_cursor_, 0);
   join_->basis.render(run, std::span(basis1).first(n), join_cursor_, 1);
   for (std::size_t i = 0; i < n; ++i) out[i] += deltas_.dp0 * basis0[i] + deltas_.dp1 * basis1[i];
+  if (brake_slope_ == 0) return;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = (run.at(static_cast<std::int64_t>(i)) - join_->u_join) / brake_u_;
+    if (!(x < 1)) break;
+    out[i] = rounded(out[i], x);
+  }
 }
 
 }  // namespace knotwave::dsp

@@ -41,7 +41,7 @@ class EnvelopeProgram {
   bool has_sustain() const KNOTWAVE_RT { return spec_.sustain_u >= program_.u_min(); }
   bool has_loop() const KNOTWAVE_RT { return spec_.loop_end_u > spec_.loop_start_u; }
   double u_per_second() const KNOTWAVE_RT { return u_per_second_; }
-  /// Joins of straight lines (degree 1) keep the value only.
+  /// Not for straight lines (degree 1): they join their value, a brake plays the slope.
   bool joins_slope() const KNOTWAVE_RT { return joins_slope_; }
   double end_value() const KNOTWAVE_RT { return end_value_; }  ///< what it rests at
 
@@ -56,20 +56,23 @@ class EnvelopeProgram {
 };
 
 /// One voice's envelope. Gate times carry a fraction of a sample; the value is a function of time:
-///   y(n) = program(place(n)) + dp0 R0(age(n)) + dp1 R1(age(n)),
+///   y(n) = program(place) + dp0 R0(age) + dp1 R1(age) + brake(age),
 /// where place and age run along u from the last gate, place wraps at the loop and stops at the
-/// sustain knot, and R0, R1 belong to the join (curves/compile.h), exactly 0 once it is over. Calls
-/// come in order of time; one program plays until the envelope is idle or reset.
+/// sustain knot. R0 and R1 belong to the join (curves/compile.h) and are exactly 0 once it is over.
+/// The brake plays what slope the hull did not let P1 take, or a straight line has no point for: it
+/// is as long as the hull allows. Calls come in order of time; one program plays until the envelope
+/// is idle or reset.
 class Envelope {
  public:
   /// Opens the gate at `time`. From rest: plays the curve from its start. While sounding:
-  /// Retrigger::current joins from the present value and slope (C0 always, C1 where the hull
-  /// allows and nothing but time moves the curve); restart jumps to the start. `time_scale`
+  /// Retrigger::current joins from the present value and slope (C0 always; C1 while controls stand
+  /// still and the value is not on the hull's edge); restart jumps to the start. `time_scale`
   /// stretches the whole curve (velocity, key): clamped to 1e-4..1e4, NaN = 1. [audio]
   void gate_on(const EnvelopeProgram& program, base::SampleTime time, double rate_hz,
                double time_scale) KNOTWAVE_RT;
   /// Closes the gate at `time`: jumps to the release section, joined as above. Held exactly where
-  /// that section starts, the curve goes on as drawn. [audio]
+  /// that section starts, the curve goes on as drawn but for the corner, rounded over 10 ms or a
+  /// 32nd of the section. [audio]
   void gate_off(const EnvelopeProgram& program, base::SampleTime time) KNOTWAVE_RT;
   /// Goes to rest at once. [audio]
   void reset() KNOTWAVE_RT { *this = {}; }
@@ -82,7 +85,7 @@ class Envelope {
   /// The curve had come to its end (or was never started) by the last sample rendered. [audio]
   bool is_idle() const KNOTWAVE_RT { return stage_ == Stage::idle; }
   bool gate_is_open() const KNOTWAVE_RT { return stage_ == Stage::gate_open; }
-  /// Times p1 was limited to the hull, so that a join was C0. [audio]
+  /// Times p1 was limited to the hull, and a brake played the rest of the slope. [audio]
   int limited_joins() const KNOTWAVE_RT { return limited_joins_; }
 
  private:
@@ -103,6 +106,11 @@ class Envelope {
   void run_from(double u, base::SampleTime time) KNOTWAVE_RT;
   void join(const EnvelopeProgram& program, const curves::JoinProgram& section, const Now& from,
             base::SampleTime time) KNOTWAVE_RT;
+  void let_go(const EnvelopeProgram& program, const Now& from, base::SampleTime time) KNOTWAVE_RT;
+  void start(const curves::JoinProgram& section, base::SampleTime time) KNOTWAVE_RT;
+  void set_brake(const curves::JoinProgram& section, double value, double kept, double wanted,
+                 double longest) KNOTWAVE_RT;
+  double rounded(double value, double x) const KNOTWAVE_RT;
   double place(const EnvelopeProgram& program, double u) const KNOTWAVE_RT;
   void render_chunk(const EnvelopeProgram& program, std::int64_t first,
                     std::span<const double* const> controls, std::size_t offset,
@@ -113,8 +121,10 @@ class Envelope {
   Stage stage_ = Stage::idle;
   Run place_, age_;
   double u_per_sample_ = 0;
+  double rounding_u_ = 0;  ///< 10 ms
   const curves::JoinProgram* join_ = nullptr;
   curves::JoinProgram::Deltas deltas_;
+  double brake_slope_ = 0, brake_u_ = 1;  ///< slope by u the hull left over, and how long it lasts
   int limited_joins_ = 0;
   bool controls_moved_ = false;  ///< last_controls_ holds what the last sample was rendered with
   std::array<double, curves::kMaxControls> last_controls_{};

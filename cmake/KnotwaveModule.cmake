@@ -49,3 +49,10 @@ function(knotwave_test module)
   gtest_discover_tests(test_${module} TEST_FILTER "*Stress.*" TEST_LIST test_${module}_STRESS
     PROPERTIES LABELS stress TIMEOUT 3600 DISCOVERY_TIMEOUT 60)
 endfunction()
+
+# knotwave_bench(FILE LIBS ...): bench/FILE.cpp as the program bench/FILE (Google Benchmark).
+function(knotwave_bench name)
+  cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
+  add_executable(${name} ${name}.cpp)
+  target_link_libraries(${name} PRIVATE ${arg_LIBS} benchmark::benchmark_main knotwave_flags)
+endfunction()

@@ -54,10 +54,32 @@ void render_run(const PieceWalk& walk, const GridRun& run, std::span<Float> out,
   }
 }
 
+/// Samples taken one by one, without a hint, where they jump from piece to piece.
+constexpr std::size_t kScattered = 32;
+
+void render_scattered(const PieceWalk& walk, std::span<const double> u,
+                      std::span<double> out) KNOTWAVE_RT {
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    // No branch that depends on the piece, so that one sample does not wait for the other.
+    const Place place = walk.place(u[i], -1);
+    if (place.kind != Place::Kind::piece) {
+      out[i] = walk.value(place, u[i], {});
+      continue;
+    }
+    PieceTask task = walk.task(place);
+    task.clamp = true;  // where it is not needed it changes nothing
+    out[i] = sample_piece(task, u[i]);
+  }
+}
+
 /// How many of u[0..] lie in the place of the first.
 std::size_t same_place(const PieceWalk& walk, const Place& place,
                        std::span<const double> u) KNOTWAVE_RT {
   std::size_t n = 1;
+  if (place.kind == Place::Kind::piece) {
+    const PieceWalk::Range range = walk.certain_range(place);
+    while (n < u.size() && u[n] >= range.low && u[n] < range.high && u[n] > walk.u_min()) ++n;
+  }
   while (n < u.size() && walk.contains(place, u[n])) ++n;
   return n;
 }
@@ -128,14 +150,14 @@ void CurveProgram::render(std::span<const double> u, std::span<double> out, Curv
   for (std::size_t i = 0; i < count;) {
     const Place place = walk.place(u[i], cursor.piece);
     cursor.piece = place.piece;
-    const std::size_t n = same_place(walk, place, u.subspan(i, count - i));
+    std::size_t n = same_place(walk, place, u.subspan(i, count - i));
     if (place.kind != Place::Kind::piece) {
       std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(i), n, walk.value(place, 0, {}));
     } else if (n >= kShortRun) {
       grid_kernels().array(walk.task(place), u.data() + i, out.data() + i, n);
     } else {
-      const PieceTask task = walk.task(place);
-      for (std::size_t j = i; j < i + n; ++j) out[j] = sample_piece(task, u[j]);
+      n = std::min(kScattered, count - i);
+      render_scattered(walk, u.subspan(i, n), out.subspan(i, n));
     }
     i += n;
   }

@@ -72,6 +72,7 @@ CurveProgram ProgramBuilder::build(ProgramParts parts) {
   program.degree_ = parts.degree;
   program.rational_ = parts.rational;
   program.periodic_ = parts.periodic;
+  program.piece_size_ = parts.piece_size();
   program.max_error_ = parts.max_error;
   program.inverse_period_ = 1.0 / (parts.breaks.back() - parts.breaks.front());
   program.breaks_ = std::move(parts.breaks);

@@ -90,6 +90,7 @@ class CurveProgram {
   bool periodic_ = false;
   double max_error_ = 0;
   double inverse_period_ = 1;
+  std::size_t piece_size_ = 1;  // coefficients of a piece
   std::vector<double> breaks_;
   std::vector<double> inverse_widths_;
   std::vector<double> coefficients_;

@@ -10,9 +10,6 @@
 namespace knotwave::curves {
 namespace {
 
-/// Looks a piece at NurbsCurve::evaluate once the pieces are made.
-constexpr int kLooks = 5;
-
 Result<void> check_options(const NurbsCurve& curve, const CompileOptions& options) {
   if (!(options.max_error > 0) || options.max_pieces < 1) {
     return fail(ErrorCode::value_out_of_range,
@@ -37,7 +34,7 @@ Result<CurveProgram> checked_program(const NurbsCurve& curve, ProgramParts parts
   }
   const double fit_error = parts.max_error;
   CurveProgram program = ProgramBuilder::build(std::move(parts));
-  const auto error = measured_error(program, curve, options.controls, kLooks);
+  const auto error = measured_error(program, curve, options.controls);
   if (!error) return error.error();
   if (!(*error <= options.max_error)) {
     return missed_bound(curve, *error, options.max_error,
@@ -61,7 +58,11 @@ Result<CurveProgram> exact_program(const NurbsCurve& curve, const CompileOptions
 
 Result<CurveProgram> compile_parametric(const NurbsCurve& curve, const CompileOptions& options) {
   if (auto checked = check_options(curve, options); !checked) return checked.error();
-  if (curve.degree() <= kMaxPieceDegree) return exact_program(curve, options);
+  if (curve.degree() <= kMaxPieceDegree) {
+    auto exact = exact_program(curve, options);
+    // Weights a million to one apart can round away too much; shorter pieces then still meet it.
+    if (exact || !options.controls.empty()) return exact;
+  }
   if (options.controls.empty()) return fitted_program(curve, options);
   return no_controls(curve, "above degree " + std::to_string(kMaxPieceDegree) +
                                 ", this curve has degree " + std::to_string(curve.degree()));

@@ -44,16 +44,46 @@ std::vector<double> corner_values(const std::vector<ControlRange>& controls, uns
   return values;
 }
 
+/// Whether weights lie so far apart that rounding, which is random, is most of the error: then
+/// more looks are taken, and what lies between them is covered by a factor of 2.
+bool is_delicate(const CurveProgram& program, const NurbsCurve& curve,
+                 const std::vector<ControlRange>& controls) {
+  if (!program.is_rational()) return false;
+  constexpr double kSteady = 30;
+  double low = curve.weights()[0];
+  double high = low;
+  for (const double w : curve.weights()) {
+    low = std::min(low, w);
+    high = std::max(high, w);
+  }
+  for (const ControlRange& control : controls) {
+    if (control.kind != ControlRange::Kind::weight) continue;
+    low = std::min(low, control.low);
+    high = std::max(high, control.high);
+  }
+  return high > kSteady * low;
+}
+
+/// Where a piece is looked at, as t: places that are no simple fractions, then ever nearer to the
+/// right end, where sums of powers cancel and a small weight beside large ones shows it.
+std::vector<double> looks_of(bool delicate) {
+  std::vector<double> looks;
+  const int count = delicate ? 16 : 5;
+  for (int i = 0; i < count; ++i) looks.push_back((i + 0.381966) / count);
+  const double closer = delicate ? 0x1p-1 : 0x1p-4;
+  for (double gap = 0x1p-6; gap > 0x1p-50; gap *= closer) looks.push_back(1 - gap);
+  for (int last = 1; delicate && last <= 16; ++last) looks.push_back(1 - last * 0x1p-53);
+  return looks;
+}
+
 double error_at_corner(const CurveProgram& program, const NurbsCurve& curve,
-                       const std::vector<double>& controls, int looks) {
+                       const std::vector<double>& controls, std::span<const double> looks) {
   double worst = 0;
   double exact[kMaxDim];
   const auto breaks = program.breaks();
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
-    for (int look = 0; look <= looks; ++look) {
-      // Places that are no simple fraction of the span; the last is beside its right end.
-      const double t = (look + 0.381966) / (looks + 0.5);
-      const double u = breaks[i] + std::min(t, 0.999999) * (breaks[i + 1] - breaks[i]);
+    for (const double t : looks) {
+      const double u = breaks[i] + t * (breaks[i + 1] - breaks[i]);
       if (!(u < breaks[i + 1])) continue;
       curve.evaluate(u, exact);
       for (int c = 0; c < program.dim(); ++c) {
@@ -142,7 +172,9 @@ Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions&
 }
 
 Result<double> measured_error(const CurveProgram& program, const NurbsCurve& curve,
-                              const std::vector<ControlRange>& controls, int looks) {
+                              const std::vector<ControlRange>& controls) {
+  const bool delicate = is_delicate(program, curve, controls);
+  const std::vector<double> looks = looks_of(delicate);
   double worst = error_at_corner(program, curve, {}, looks);
   for (unsigned corner = 0; !controls.empty() && corner < 1U << controls.size(); ++corner) {
     const std::vector<double> values = corner_values(controls, corner);
@@ -151,7 +183,7 @@ Result<double> measured_error(const CurveProgram& program, const NurbsCurve& cur
     const double error = error_at_corner(program, *moved, values, looks);
     worst = error <= worst ? worst : error;
   }
-  return worst;
+  return delicate ? 2 * worst : worst;
 }
 
 Error missed_bound(const NurbsCurve& curve, double error, double asked, const std::string& why) {

@@ -23,10 +23,10 @@ ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& 
 /// Whether knots leave every span a width whose inverse is a normal number.
 Result<void> check_widths(const NurbsCurve& curve);
 
-/// Largest |program - curve| over all coordinates, at `looks` places a piece, with controls at rest
-/// and at every corner of their ranges.
+/// Largest |program - curve| over all coordinates, with controls at rest and at every corner of
+/// their ranges; doubled where weights lie far apart.
 Result<double> measured_error(const CurveProgram& program, const NurbsCurve& curve,
-                              const std::vector<ControlRange>& controls, int looks);
+                              const std::vector<ControlRange>& controls);
 
 /// error_bound_missed, with both numbers.
 Error missed_bound(const NurbsCurve& curve, double error, double asked, const std::string& why);

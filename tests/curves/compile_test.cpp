@@ -7,6 +7,7 @@
 
 #include "knotwave/curves/algorithms.h"
 
+#include "curves/random_curve.h"
 #include "curves/random_curves.h"
 #include "support/seed.h"
 
@@ -87,6 +88,40 @@ TEST(Compile, RationalSpansBecomePolynomialWithinTheirBound) {
     EXPECT_LE(program->max_error(), options.max_error);
     EXPECT_LE(worst_error(*program, curve, 2000), program->max_error() + kRounding) << i;
   }
+}
+
+// Weights from 1e-6 to 1e6, points from 1e-6 to 1e6, knots of every kind.
+TEST(Compile, NastyCurvesAreWithinTheReportedErrorOrRefused) {
+  const std::uint64_t seed = support::test_seed();
+  int compiled = 0, refused = 0;
+  for (int i = 0; i < support::test_count(300); ++i) {
+    test::Dice dice(seed * 1000 + std::uint64_t(i));
+    const NurbsCurve curve = test::random_curve(dice);
+    const double largest = test::largest_coordinate(curve);
+    CompileOptions options;
+    options.max_error = 1e-7 * largest;
+    const auto program =
+        i % 2 == 0 ? compile_parametric(curve, options) : compile_polynomial(curve, options);
+    if (!program) {
+      EXPECT_EQ(program.error().code, ErrorCode::error_bound_missed) << program.error().message;
+      ++refused;
+      continue;
+    }
+    ++compiled;
+    for (int k = 0; k < 200; ++k) {
+      const double u = test::random_parameter(dice, curve);
+      double exact[kMaxDim];
+      curve.evaluate(u, exact);
+      for (int c = 0; c < curve.dim(); ++c) {
+        EXPECT_NEAR(program->at_u(u, c), exact[c], program->max_error() + 1e-11 * largest)
+            << "curve " << i << ", u = " << u;
+      }
+    }
+  }
+  RecordProperty("compiled", compiled);
+  RecordProperty("refused", refused);
+  std::printf("%d compiled, %d refused\n", compiled, refused);
+  EXPECT_GT(compiled, 250);
 }
 
 TEST(Compile, ThePolynomialFormOfACurveWithoutWeightsIsExact) {

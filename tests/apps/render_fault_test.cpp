@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// Full disks, forbidden folders, signals: under the final name there is the old file or a whole new
+// one, never half of one.
+#include <cstring>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <sys/mount.h>
+#include <unistd.h>
+
+#include "knotwave/base/random.h"
+#include "knotwave/io/sound_file.h"
+
+#include "apps/render_scene.h"
+#include "support/seed.h"
+
+namespace knotwave::render {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class RenderFaults : public RenderScene {
+ protected:
+  std::vector<std::string> files_with(const std::string& text) const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_.path())) {
+      const std::string name = entry.path().filename();
+      if (name.find(text) != std::string::npos) names.push_back(name);
+    }
+    return names;
+  }
+  /// Takes seconds to write: 24 minutes of sound.
+  static std::vector<std::string> long_render() {
+    return {"small.toml", "small.mid", "-o", "out.wav", "--tail", "1400", "--bits", "32f"};
+  }
+};
+
+/// A small tmpfs, or a read-only one, where the user may mount.
+class Mount {
+ public:
+  Mount(const std::string& folder, unsigned long flags, const char* data) : folder_(folder) {
+    fs::create_directory(folder);
+    is_there_ = ::mount("tmpfs", folder.c_str(), "tmpfs", flags, data) == 0;
+  }
+  ~Mount() {
+    if (is_there_) ::umount2(folder_.c_str(), MNT_DETACH);
+  }
+  Mount(const Mount&) = delete;
+  Mount& operator=(const Mount&) = delete;
+  bool is_there() const { return is_there_; }
+
+ private:
+  std::string folder_;
+  bool is_there_ = false;
+};
+
+TEST_F(RenderFaults, AFullDiskIsCode75AndTheOldFileIsKept) {
+  const Mount disk(file("disk"), 0, "size=256k");
+  if (!disk.is_there())
+    GTEST_SKIP() << "mounting a small disk needs root: " << std::strerror(errno);
+  for (const char* name : {"disk/out.wav", "disk/out.flac"}) {
+    write(name, "old");
+    const auto done = run({"small.toml", "small.mid", "-o", name, "--tail", "20"});
+    // twenty seconds of silence is little FLAC, so that one may fit
+    if (done.exit_code == 0) continue;
+    EXPECT_EQ(done.exit_code, 75);
+    EXPECT_THAT(done.err, HasSubstr("No space left on device"));
+    EXPECT_EQ(read(name), "old");
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("disk")), {}), 2);
+  EXPECT_EQ(read("disk/out.wav"), "old");
+}
+
+TEST_F(RenderFaults, AFullPipeIsCode75) {
+  const std::string command = KNOTWAVE_BIN_DIR "/knotwave-render small.toml small.mid -o -";
+  support::ProgramOptions options;
+  options.folder = folder_.path();
+  const auto full = support::run_program({"/bin/sh", "-c", command + " > /dev/full"}, options);
+  EXPECT_EQ(full.exit_code, 75);
+  EXPECT_THAT(full.err, HasSubstr("cannot write to standard output: No space left on device"));
+  const auto closed =
+      support::run_program({"/bin/sh", "-c", command + " | head -c 100 >/dev/null"}, options);
+  EXPECT_THAT(closed.err, HasSubstr("its reader has gone"));
+}
+
+TEST_F(RenderFaults, AReadOnlyFolderIsNamed) {
+  std::string name = "locked/out.wav";
+  const Mount disk(file("locked"), MS_RDONLY, "size=256k");
+  if (!disk.is_there()) {
+    fs::permissions(file("locked"), fs::perms::owner_read | fs::perms::owner_exec);
+  }
+  const auto done = run({"small.toml", "small.mid", "-o", name});
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_THAT(done.err, HasSubstr("locked"));
+  if (!disk.is_there()) fs::permissions(file("locked"), fs::perms::owner_all);
+}
+
+TEST_F(RenderFaults, AFileSizeLimitIsToldAndNothingIsLeft) {
+  support::ProgramOptions options;
+  options.max_file_bytes = 50'000;
+  const auto done = run({"small.toml", "small.mid", "-o", "out.wav"}, options);
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_THAT(done.err, HasSubstr("File too large"));
+  EXPECT_THAT(files_with("out"), IsEmpty());
+}
+
+TEST_F(RenderFaults, AnOldFileIsReplacedOnlyByAWholeOne) {
+  write("out.wav", "old");
+  EXPECT_EQ(run({"none.toml", "small.mid", "-o", "out.wav"}).exit_code, 1);
+  EXPECT_EQ(read("out.wav"), "old");
+  render({"-o", "out.wav"});
+  EXPECT_TRUE(io::read_sound(file("out.wav")).has_value());
+}
+
+TEST_F(RenderFaults, DevicesAreNotReplaced) {
+  EXPECT_EQ(run({"small.toml", "small.mid", "-o", "/dev/null"}).exit_code, 1);
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(RenderFaults, AnInterruptAtAnyTimeLeavesTheOldFileAlone) {
+  write("out.wav", "old");
+  const base::RandomStream random{.seed = support::test_seed(), .voice = 0, .purpose = 0};
+  for (int i = 0; i < support::test_count(8); ++i) {
+    support::ProgramOptions options;
+    options.interrupt_after_s = 0.02 + 0.3 * random.unit(static_cast<std::uint64_t>(i));
+    const auto done = run(long_render(), options);
+    EXPECT_EQ(done.exit_code, 130) << "after " << options.interrupt_after_s << " s";
+    EXPECT_THAT(done.err, HasSubstr("interrupted"));
+    EXPECT_EQ(read("out.wav"), "old");
+    EXPECT_THAT(files_with(".part-"), IsEmpty());
+  }
+}
+
+TEST_F(RenderFaults, AKillLeavesAPartThatTheNextRunSweeps) {
+  write("out.wav", "old");
+  const base::RandomStream random{.seed = support::test_seed(), .voice = 1, .purpose = 0};
+  for (int i = 0; i < support::test_count(4); ++i) {
+    support::ProgramOptions options;
+    options.kill_after_s = 0.1 + 0.3 * random.unit(static_cast<std::uint64_t>(i));
+    EXPECT_EQ(run(long_render(), options).exit_code, 137);
+    EXPECT_EQ(read("out.wav"), "old");
+  }
+  EXPECT_FALSE(files_with(".part-").empty());
+  render({"-o", "out.wav"});
+  EXPECT_THAT(files_with(".part-"), IsEmpty());
+  EXPECT_TRUE(io::read_sound(file("out.wav")).has_value());
+}
+
+}  // namespace
+}  // namespace knotwave::render

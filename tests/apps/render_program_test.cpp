@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// knotwave-render as a user runs it: what it prints, writes and ends with.
+#include <cstring>
+#include <regex>
+
+#include <gmock/gmock.h>
+
+#include "knotwave/base/sha256.h"
+#include "knotwave/io/sound_file.h"
+
+#include "apps/render_scene.h"
+
+namespace knotwave::render {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using RenderProgram = RenderScene;
+
+std::string sha256_of(const std::string& bytes) {
+  base::Sha256 hash;
+  hash.update(std::as_bytes(std::span(bytes)));
+  return hash.finish_hex();
+}
+std::vector<float> floats_in(const std::string& bytes) {
+  std::vector<float> samples(bytes.size() / 4);
+  std::memcpy(samples.data(), bytes.data(), samples.size() * 4);
+  return samples;
+}
+
+TEST_F(RenderProgram, EndsWithOneLineThatSaysAll) {
+  const auto done = render({"-o", "out.wav"});
+  const std::regex line(
+      "out\\.wav: [0-9]+\\.[0-9]{3} s, 48000 Hz, 2 channels, peak -[0-9.]+ dBFS, rms -[0-9.]+ "
+      "dBFS, seed 1, sha256 [0-9a-f]{64}, [0-9.]+ times real time\n");
+  EXPECT_TRUE(std::regex_match(done.out, line)) << done.out;
+  EXPECT_THAT(done.err, IsEmpty()) << "no progress bar where there is no terminal";
+}
+
+TEST_F(RenderProgram, TheHashIsOverTheFloatSamplesBeforeConversion) {
+  const auto pipe = render({"-o", "-"});
+  EXPECT_EQ(hash_in(pipe.err), sha256_of(pipe.out));
+  for (const char* bits : {"16", "24", "32f"}) {
+    EXPECT_EQ(hash_in(render({"-o", "out.wav", "--bits", bits}).out), hash_in(pipe.err)) << bits;
+  }
+  EXPECT_EQ(hash_in(render({"-o", "out.flac"}).out), hash_in(pipe.err));
+  render({"-o", "out.wav", "--bits", "32f"});
+  EXPECT_EQ(io::read_sound(file("out.wav"))->samples, floats_in(pipe.out));
+}
+
+TEST_F(RenderProgram, BlockThreadsAndSimdChangeNoSample) {
+  const std::string hash = hash_in(render({"-o", "out.wav"}).out);
+  ASSERT_EQ(hash.size(), 64u);
+  for (const char* block : {"1", "7", "64", "256", "4096"}) {
+    EXPECT_EQ(hash_in(render({"-o", "out.wav", "--block", block}).out), hash) << block;
+  }
+  for (const char* threads : {"2", "4"}) {
+    EXPECT_EQ(hash_in(render({"-o", "out.wav", "--threads", threads}).out), hash) << threads;
+  }
+  EXPECT_EQ(hash_in(render({"-o", "out.wav", "--simd", "baseline"}).out), hash);
+}
+
+TEST_F(RenderProgram, TwoRunsWriteTheSameBytes) {
+  for (const char* name : {"a.wav", "a.flac"}) {
+    render({"-o", name, "--bits", "16"});
+    const std::string first = read(name);
+    render({"-o", name, "--bits", "16"});
+    EXPECT_EQ(read(name), first) << name;
+  }
+}
+
+TEST_F(RenderProgram, StemsAddUpToTheMixToTheBit) {
+  render({"-o", "mix.wav", "--bits", "32f", "--stems", "stems"});
+  const auto mix = io::read_sound(file("mix.wav"));
+  std::vector<float> sum(mix->samples.size());
+  for (const char* name : {"channel-01.wav", "channel-02.wav", "channel-05.wav"}) {
+    const auto stem = io::read_sound(file(std::string("stems/") + name));
+    ASSERT_TRUE(stem.has_value()) << stem.error().to_string();
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += stem->samples[i];
+  }
+  EXPECT_EQ(sum, mix->samples);
+  EXPECT_THAT(read("stems/channel-03.wav"), IsEmpty());
+}
+
+TEST_F(RenderProgram, StemsChangeNoSampleOfTheMix) {
+  const std::string hash = hash_in(render({"-o", "mix.wav"}).out);
+  EXPECT_EQ(hash_in(render({"-o", "mix.wav", "--stems", "stems"}).out), hash);
+}
+
+TEST_F(RenderProgram, JsonHoldsTheReport) {
+  const auto done = render({"-o", "out.wav", "--json", "-", "--seed", "9"});
+  for (const char* key :
+       {"path", "seconds", "frames", "rate_hz", "channels", "peak_dbfs", "rms_dbfs", "seed",
+        "sha256", "sha256_file", "realtime_factor", "voices_peak", "voices_stolen", "warnings"}) {
+    EXPECT_THAT(done.out, HasSubstr(std::string("\"") + key + "\": "));
+  }
+  EXPECT_THAT(done.out, HasSubstr("\"sha256_file\": \"" + sha256_of(read("out.wav")) + "\""));
+  EXPECT_THAT(done.out, HasSubstr("\"sha256\": \"" + hash_in(done.err) + "\""));
+  EXPECT_THAT(done.out, HasSubstr("\"seed\": 9"));
+  render({"-o", "out.wav", "--json", "out.json"});
+  EXPECT_THAT(read("out.json"), HasSubstr("\"path\": \"out.wav\""));
+}
+
+TEST_F(RenderProgram, AFixedTailIsExactAndAutoEndsInSilence) {
+  // The song ends after 1 s.
+  EXPECT_EQ(render({"-o", "-", "--tail", "0.5"}).out.size(), 72000u * 8);
+  EXPECT_EQ(render({"-o", "-", "--tail", "0"}).out.size(), 48000u * 8);
+  const auto samples = floats_in(render({"-o", "-"}).out);
+  EXPECT_GT(samples.size(), 2 * 48000u);
+  EXPECT_LT(samples.size(), 2 * 54000u);
+  EXPECT_EQ(samples[samples.size() - 1], 0.0f);
+}
+
+TEST_F(RenderProgram, ARateIsKept) {
+  render({"-o", "out.wav", "--rate", "44100", "--tail", "0"});
+  const auto sound = io::read_sound(file("out.wav"));
+  EXPECT_EQ(sound->rate_hz, 44100);
+  EXPECT_EQ(sound->frames, 44100);
+}
+
+TEST_F(RenderProgram, ALongerSongThanMaxLengthIsRefused) {
+  const auto done = run({"small.toml", "small.mid", "-o", "out.wav", "--max-length", "0.9"});
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_EQ(done.err, "small.mid: error: the song lasts 1.0 s; --max-length allows 0.9 s\n");
+  EXPECT_THAT(read("out.wav"), IsEmpty());
+}
+
+TEST_F(RenderProgram, CheckReadsEverythingAndWritesNothing) {
+  const auto done = run({"--check", "small.toml", "small.mid"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.out, "small.mid: ok: 1 tracks, 8 events, 1.000 s\n");
+  write("broken.toml", "format = 1\nkind = \"patch\"\nnaem = \"x\"\n");
+  const auto broken = run({"--check", "broken.toml", "small.mid"});
+  EXPECT_EQ(broken.exit_code, 1);
+  EXPECT_THAT(broken.err, HasSubstr("broken.toml:3:"));
+  EXPECT_THAT(broken.err, HasSubstr("did you mean 'name'?"));
+}
+
+TEST_F(RenderProgram, WarningsOfTheSongAreToldUnlessQuiet) {
+  std::string bytes = read("small.mid");
+  write("cut.mid", bytes.substr(0, bytes.size() - 4));
+  const auto done = run({"small.toml", "cut.mid", "-o", "out.wav"});
+  EXPECT_EQ(done.exit_code, 0);
+  EXPECT_THAT(done.err, HasSubstr("cut.mid: byte "));
+  EXPECT_THAT(done.err, HasSubstr(": warning: "));
+  EXPECT_THAT(run({"small.toml", "cut.mid", "-o", "out.wav", "--quiet"}).err, IsEmpty());
+}
+
+TEST_F(RenderProgram, ClippingIsCountedAndTold) {
+  std::string loud = kSmallPatch;
+  loud.insert(loud.find("[curves"), "gain_db = 24\n");
+  write("loud.toml", loud);
+  const auto done = run({"loud.toml", "small.mid", "-o", "out.wav"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("samples were beyond full scale and are clipped"));
+  EXPECT_THAT(run({"loud.toml", "small.mid", "-o", "out.wav", "--bits", "32f"}).err, IsEmpty());
+}
+
+TEST_F(RenderProgram, DemosNeedNoOtherFile) {
+  const auto done = run({"--demo", "first-light", "-o", "out.wav"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(read("out.wav").substr(0, 4), "RIFF");
+}
+
+TEST_F(RenderProgram, WrongUsageIsCode2WithASuggestion) {
+  const struct {
+    std::vector<std::string> words;
+    const char* text;
+  } cases[] = {
+      {{"small.toml", "small.mid", "-o", "x.wav", "--rat", "1"}, "did you mean '--rate'?"},
+      {{"small.toml", "small.mid", "-o", "x.wav", "--sed=3"}, "did you mean '--seed'?"},
+      {{"--demo", "first-lite", "-o", "x.wav"}, "did you mean 'first-light'?"},
+      {{"small.toml", "small.mid", "-o", "x.wav", "--bits", "20"}, "--bits: 20 not in {16,24,32f}"},
+      {{"small.toml", "small.mid", "-o", "x.wav", "--rate", "7"}, "--rate: Value 7 not in range"},
+      {{"small.toml", "small.mid", "-o", "x.wav", "--tail", "-1"}, "--tail: '-1' is neither"},
+      {{"small.toml", "small.mid", "-o", "x.wav", "--tail", "nan"}, "--tail: 'nan' is neither"},
+      {{"small.toml", "small.mid"}, "where to?"},
+      {{"small.toml", "-o", "x.wav"}, "a PATCH and a SCORE are needed"},
+      {{"small.toml", "small.mid", "-o", "-", "--json", "-"}, "cannot share standard output"},
+      {{"small.toml", "small.mid", "--demo", "first-light", "-o", "x.wav"}, "its own patch"},
+  };
+  for (const auto& c : cases) {
+    const auto done = run(c.words);
+    EXPECT_EQ(done.exit_code, 2) << done.err;
+    EXPECT_THAT(done.err, HasSubstr(c.text));
+    EXPECT_THAT(done.err, HasSubstr("Try 'knotwave-render --help'."));
+  }
+}
+
+TEST_F(RenderProgram, FailureIsCode1WithTheFileNamed) {
+  const struct {
+    std::vector<std::string> words;
+    const char* text;
+  } cases[] = {
+      {{"none.toml", "small.mid", "-o", "x.wav"}, "none.toml: error: no such file"},
+      {{"small.toml", "none.mid", "-o", "x.wav"}, "none.mid: error: no such file"},
+      {{"small.mid", "small.toml", "-o", "x.wav"}, "small.toml: byte 0: error: not a MIDI file"},
+      {{"small.toml", "small.mid", "-o", "no/such/x.wav"}, "no/such"},
+      {{"small.toml", "small.mid", "-o", "x.mp3"}, "neither in .wav nor in .flac"},
+      {{"small.toml", "small.mid", "-o", "x.flac", "--bits", "32f"}, "not 32-bit float"},
+      {{"small.toml", "small.mid", "-o", "x.wav", "--stems", "small.mid"}, "small.mid"},
+  };
+  for (const auto& c : cases) {
+    const auto done = run(c.words);
+    EXPECT_EQ(done.exit_code, 1) << done.err;
+    EXPECT_THAT(done.err, HasSubstr(c.text));
+    EXPECT_THAT(read("x.wav"), IsEmpty());
+  }
+}
+
+TEST_F(RenderProgram, HelpNamesEveryOptionAndExitCode) {
+  const auto help = run({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* word :
+       {"--output", "--demo", "--check", "--max-length", "--rate", "--block", "--threads", "--seed",
+        "--bits", "--tail", "--json", "--stems", "--quiet", "--simd", "--version", "first-light",
+        "75 try again", "130 interrupted"}) {
+    EXPECT_THAT(help.out, HasSubstr(word));
+  }
+  EXPECT_THAT(run({"--version"}).out, testing::MatchesRegex("knotwave-render [0-9.]+\n"));
+}
+
+TEST_F(RenderProgram, ProgressIsDrawnOnATerminal) {
+  const std::string command =
+      KNOTWAVE_BIN_DIR "/knotwave-render small.toml small.mid -o out.wav --tail 60";
+  support::ProgramOptions options;
+  options.folder = folder_.path();
+  const auto on_terminal =
+      support::run_program({"/usr/bin/script", "-qec", command, "/dev/null"}, options);
+  EXPECT_EQ(on_terminal.exit_code, 0) << on_terminal.out;
+  EXPECT_THAT(on_terminal.out, HasSubstr(" left"));
+  const auto quiet =
+      support::run_program({"/usr/bin/script", "-qec", command + " --quiet", "/dev/null"}, options);
+  EXPECT_THAT(quiet.out, testing::Not(HasSubstr(" left")));
+}
+
+}  // namespace
+}  // namespace knotwave::render

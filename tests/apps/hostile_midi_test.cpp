@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 
 #include "apps/render_scene.h"
-#include "io/verdicts.h"
 #include "support/corpus.h"
+#include "support/verdicts.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define KNOTWAVE_SANITIZED 1
@@ -46,7 +46,8 @@ TEST_F(HostileMidi, EveryFileOfTheCorpusGetsItsFrozenVerdict) {
   const auto files = support::corpus_files("midi_bad", {".mid"});
   std::printf("corpus: %zu files of midi_bad\n", files.size());
   if (files.empty()) GTEST_SKIP() << "KNOTWAVE_CORPUS names no midi_bad: no file was read";
-  const auto verdicts = io::read_verdicts(KNOTWAVE_SOURCE_DIR "/tests/golden/midi_verdicts.tsv");
+  const auto verdicts =
+      support::read_verdicts(KNOTWAVE_SOURCE_DIR "/tests/golden/midi_verdicts.tsv");
   const std::string root = support::corpus_root() + "/midi_bad/";
   for (const auto& path : files) {
     const auto row = verdicts.find(path.substr(root.size()));

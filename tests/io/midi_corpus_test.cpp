@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "io/midi_bytes.h"
-#include "io/verdicts.h"
 #include "support/corpus.h"
 #include "support/program.h"
+#include "support/verdicts.h"
 
 namespace knotwave::io {
 namespace {
@@ -28,8 +28,8 @@ std::string verdict_of(const std::string& file) {
   return "accept " + std::to_string(song->warnings.size() + song->warnings_left_out);
 }
 
-Verdicts seen_verdicts() {
-  Verdicts seen;
+support::Verdicts seen_verdicts() {
+  support::Verdicts seen;
   const std::string root = support::corpus_root() + "/midi_bad/";
   for (const auto& file : support::corpus_files("midi_bad", {".mid"})) {
     seen[file.substr(root.size())] = verdict_of(file);
@@ -38,23 +38,23 @@ Verdicts seen_verdicts() {
 }
 
 TEST(MidiCorpus, HostileFilesGetTheirFrozenVerdict) {
-  const Verdicts seen = seen_verdicts();
+  const support::Verdicts seen = seen_verdicts();
   std::printf("corpus: %zu files of midi_bad\n", seen.size());
   if (seen.empty()) GTEST_SKIP() << "KNOTWAVE_CORPUS names no midi_bad: no file was read";
-  expect_verdicts(read_verdicts(kVerdictTable), seen,
-                  testing::TempDir() + "midi_verdicts_seen.tsv");
+  support::expect_verdicts(support::read_verdicts(kVerdictTable), seen,
+                           testing::TempDir() + "midi_verdicts_seen.tsv");
 }
 
 TEST(MidiCorpus, TheFrozenVerdictsAgreeWithWhatTheCorpusExpects) {
   const auto expectations =
-      read_expectations(support::corpus_root() + "/midi_bad/generated/EXPECT.tsv");
+      support::read_expectations(support::corpus_root() + "/midi_bad/generated/EXPECT.tsv");
   std::printf("corpus: %zu expectations\n", expectations.size());
   if (expectations.empty()) GTEST_SKIP() << "KNOTWAVE_CORPUS names no EXPECT.tsv";
-  const Verdicts frozen = read_verdicts(kVerdictTable);
+  const support::Verdicts frozen = support::read_verdicts(kVerdictTable);
   for (const auto& [file, expectation] : expectations) {
     const auto row = frozen.find("generated/" + file);
     ASSERT_NE(row, frozen.end()) << file;
-    EXPECT_TRUE(is_expected(row->second, expectation, true))
+    EXPECT_TRUE(support::is_expected(row->second, expectation, true))
         << file << ": " << row->second << ", expected: " << expectation;
   }
 }

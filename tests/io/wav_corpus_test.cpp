@@ -6,8 +6,8 @@
 
 #include "knotwave/io/sound_file.h"
 
-#include "io/verdicts.h"
 #include "support/corpus.h"
+#include "support/verdicts.h"
 
 namespace knotwave::io {
 namespace {
@@ -33,14 +33,15 @@ std::string verdict_of(const std::string& file) {
 }
 
 TEST(WavCorpus, FilesGetTheirFrozenVerdict) {
-  Verdicts seen;
+  support::Verdicts seen;
   const std::string root = support::corpus_root() + "/wav/";
   for (const auto& file : support::corpus_files("wav", {".wav", ".wt"})) {
     seen[file.substr(root.size())] = verdict_of(file);
   }
   std::printf("corpus: %zu files of wav\n", seen.size());
   if (seen.empty()) GTEST_SKIP() << "KNOTWAVE_CORPUS names no wav: no file was read";
-  expect_verdicts(read_verdicts(kVerdictTable), seen, testing::TempDir() + "wav_verdicts_seen.tsv");
+  support::expect_verdicts(support::read_verdicts(kVerdictTable), seen,
+                           testing::TempDir() + "wav_verdicts_seen.tsv");
 }
 
 // Where we differ from what the corpus expects, because libsndfile 1.2 does and says so:
@@ -50,10 +51,11 @@ const std::set<std::string> kOtherwise = {"72_chunk_bomb.wav", "75_rf64_ds64_hug
                                           "95_wt_ok_f32.wt", "95_wt_ok_i16.wt"};
 
 TEST(WavCorpus, TheFrozenVerdictsAgreeWithWhatTheCorpusExpects) {
-  const auto expectations = read_expectations(support::corpus_root() + "/wav/generated/EXPECT.tsv");
+  const auto expectations =
+      support::read_expectations(support::corpus_root() + "/wav/generated/EXPECT.tsv");
   std::printf("corpus: %zu expectations\n", expectations.size());
   if (expectations.empty()) GTEST_SKIP() << "KNOTWAVE_CORPUS names no EXPECT.tsv";
-  const Verdicts frozen = read_verdicts(kVerdictTable);
+  const support::Verdicts frozen = support::read_verdicts(kVerdictTable);
   for (const auto& [file, expectation] : expectations) {
     const auto row = frozen.find("generated/" + file);
     ASSERT_NE(row, frozen.end()) << file;
@@ -62,7 +64,7 @@ TEST(WavCorpus, TheFrozenVerdictsAgreeWithWhatTheCorpusExpects) {
         split != std::string::npos && expectation.find("wavetable") != std::string::npos;
     const std::string verdict =
         is_for_cycles ? row->second.substr(split + kAsCycles.size()) : row->second.substr(0, split);
-    EXPECT_EQ(is_expected(verdict, expectation, false), !kOtherwise.contains(file))
+    EXPECT_EQ(support::is_expected(verdict, expectation, false), !kOtherwise.contains(file))
         << file << ": " << row->second << ", expected: " << expectation;
   }
 }

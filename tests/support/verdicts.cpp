@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "io/verdicts.h"
+#include "support/verdicts.h"
 
 #include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
-namespace knotwave::io {
+namespace knotwave::support {
 
 Verdicts read_verdicts(const std::string& path) {
   Verdicts verdicts;
@@ -58,4 +58,4 @@ bool is_expected(const std::string& verdict, const std::string& expectation, boo
   return is_accept && (!warns || !is_clean);
 }
 
-}  // namespace knotwave::io
+}  // namespace knotwave::support

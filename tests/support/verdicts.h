@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-namespace knotwave::io {
+namespace knotwave::support {
 
 /// `accept N` with the number of warnings, or the name of the error code.
 using Verdicts = std::map<std::string, std::string>;
@@ -24,4 +24,4 @@ std::map<std::string, std::string> read_expectations(const std::string& path);
 /// error; a sentence that gives a choice allows both.
 bool is_expected(const std::string& verdict, const std::string& expectation, bool warns);
 
-}  // namespace knotwave::io
+}  // namespace knotwave::support

@@ -70,12 +70,9 @@ ChannelState::Effect ChannelState::control_change(int controller, int value) KNO
     case kNrpnLsb:
     case kNrpnMsb:
     case kRpnLsb:
-    case kRpnMsb: {
-      const bool high = controller == kNrpnMsb || controller == kRpnMsb;
-      registered_ = controller >= kRpnLsb;
-      parameter_ = high ? (value << 7) | (parameter_ & 127) : (parameter_ & ~127) | value;
+    case kRpnMsb:
+      select_parameter(controller, value);
       return Effect::none;
-    }
     case kAllSoundOff:
       return Effect::all_sound_off;
     case kResetControllers:
@@ -100,6 +97,12 @@ ChannelState::Effect ChannelState::control_change(int controller, int value) KNO
   }
   store(controller, value);
   return controller == kSustain || controller == kSostenuto ? Effect::pedals : Effect::none;
+}
+
+void ChannelState::select_parameter(int controller, int value) KNOTWAVE_RT {
+  const bool high = controller == kNrpnMsb || controller == kRpnMsb;
+  registered_ = controller >= kRpnLsb;
+  parameter_ = high ? (value << 7) | (parameter_ & 127) : (parameter_ & ~127) | value;
 }
 
 ChannelState::Effect ChannelState::data_entry(bool coarse, int value) KNOTWAVE_RT {

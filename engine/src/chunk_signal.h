@@ -26,7 +26,14 @@ struct Signal {
 template <class F>
 Signal mapped(const Signal& in, std::size_t n, ChunkBuffer& buffer, F&& f) KNOTWAVE_RT {
   if (in.is_constant()) return {f(in.constant), nullptr};
-  for (std::size_t i = 0; i < n; ++i) buffer[i] = f(in.values[i]);
+  // Two loops, so that the compiler sees that a value depends on its own place alone.
+  double* __restrict const out = buffer.data();
+  if (in.values == buffer.data()) {
+    for (std::size_t i = 0; i < n; ++i) out[i] = f(out[i]);
+  } else {
+    const double* __restrict const from = in.values;
+    for (std::size_t i = 0; i < n; ++i) out[i] = f(from[i]);
+  }
   return {0, buffer.data()};
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Maps of a patch: which numbers of curves they move, and the order everything is computed in.
+// Maps of a patch: what they read, which numbers of curves they move, where they add.
 #include <algorithm>
 
+#include "knotwave/base/suggest.h"
+
+#include "map_schedule.h"
 #include "patch_compiler.h"
 
 namespace knotwave::engine {
@@ -13,6 +16,13 @@ constexpr bool moves_a_number(const MapSpec& map) {
 
 constexpr bool varies_by_itself(MapSource source) {
   return source == MapSource::envelope || source == MapSource::lfo;
+}
+
+Result<void> check_index(const char* what, int index, std::size_t count) {
+  if (index >= 0 && static_cast<std::size_t>(index) < count) return {};
+  return fail(ErrorCode::value_out_of_range, std::string(what) + " " + std::to_string(index) +
+                                                 " does not exist; there are " +
+                                                 std::to_string(count));
 }
 
 std::string map_name(std::size_t number) { return "map " + std::to_string(number + 1); }
@@ -65,56 +75,80 @@ Result<void> PatchCompiler::compile_maps() {
   return {};
 }
 
-Result<void> PatchCompiler::check_map(const MapSpec& map) const {
-  const auto out_of_range = [](const char* what, int index, std::size_t count) {
-    return fail(ErrorCode::value_out_of_range, std::string(what) + " " + std::to_string(index) +
-                                                   " does not exist; there are " +
-                                                   std::to_string(count));
-  };
-  const auto source_fault = [&](MapSource source, int index) -> Result<void> {
-    const std::size_t count = source == MapSource::envelope ? spec_.envelopes.size()
-                              : source == MapSource::lfo    ? spec_.lfos.size()
-                                                            : 128;
-    if (index >= 0 && static_cast<std::size_t>(index) < count) return {};
-    return out_of_range("source", index, count);
-  };
-  if (auto ok = source_fault(map.source, map.source_index); !ok) return ok;
-  if (auto ok = source_fault(map.source_v, map.source_v_index); !ok) return ok;
-  const std::size_t oscillators = spec_.oscillators.size();
+Result<void> PatchCompiler::check_source(MapSource source, int index) const {
+  const std::size_t count = source == MapSource::envelope ? spec_.envelopes.size()
+                            : source == MapSource::lfo    ? spec_.lfos.size()
+                                                          : 128;
+  return check_index("source", index, count);
+}
+
+Result<void> PatchCompiler::check_target(const MapSpec& map) const {
   const int index = map.target_index;
-  const bool is_oscillator = index >= 0 && static_cast<std::size_t>(index) < oscillators;
-  const bool is_noise = index == kNoiseSource;
+  const bool is_voice = index < 0, is_noise = index == kNoiseSource;
+  const auto oscillator = [&] {
+    return check_index("oscillator", index, spec_.oscillators.size());
+  };
   switch (map.target) {
     case MapTarget::level:
-      if (!is_oscillator && !is_noise) return out_of_range("oscillator", index, oscillators);
-      break;
+      return is_noise ? Result<void>{} : oscillator();
     case MapTarget::gain:
     case MapTarget::pan:
-      if (index >= 0 && !is_oscillator && !is_noise)
-        return out_of_range("oscillator", index, oscillators);
-      break;
+      return is_voice || is_noise ? Result<void>{} : oscillator();
     case MapTarget::pitch:
-      if (index >= 0 && !is_oscillator) return out_of_range("oscillator", index, oscillators);
-      break;
+      return is_voice ? Result<void>{} : oscillator();
     case MapTarget::phase:
     case MapTarget::position:
-      if (!is_oscillator) return out_of_range("oscillator", index, oscillators);
-      break;
+      return oscillator();
     case MapTarget::lfo_rate:
-      if (index < 0 || static_cast<std::size_t>(index) >= spec_.lfos.size())
-        return out_of_range("lfo", index, spec_.lfos.size());
-      break;
+      return check_index("lfo", index, spec_.lfos.size());
     case MapTarget::envelope_time:
-      if (index < 0 || static_cast<std::size_t>(index) >= spec_.envelopes.size())
-        return out_of_range("envelope", index, spec_.envelopes.size());
-      if (varies_by_itself(map.source) || (!map.surface.empty() && varies_by_itself(map.source_v)))
-        return fail(ErrorCode::unsupported,
-                    "an envelope's time is read once, when a note starts; an envelope or LFO "
-                    "cannot move it");
-      break;
+      return check_index("envelope", index, spec_.envelopes.size());
     default:
-      break;
+      return {};
   }
+}
+
+Result<void> PatchCompiler::check_map(const MapSpec& map) const {
+  if (auto ok = check_source(map.source, map.source_index); !ok) return ok;
+  if (auto ok = check_source(map.source_v, map.source_v_index); !ok) return ok;
+  if (auto ok = check_target(map); !ok) return ok;
+  const bool varies =
+      varies_by_itself(map.source) || (!map.surface.empty() && varies_by_itself(map.source_v));
+  if (map.target != MapTarget::envelope_time || !varies) return {};
+  return fail(ErrorCode::unsupported,
+              "an envelope's time is read once, when a note starts; an envelope or LFO cannot move "
+              "it");
+}
+
+Result<void> PatchCompiler::add_curve(const MapSpec& map, PatchProgram::MapPart& part) const {
+  auto found = curve(map.curve, "its curve");
+  if (!found) return found.error();
+  curves::CompileOptions options;
+  for (const int moved : moved_numbers_of(map.curve)) {
+    options.controls.push_back(moved_[static_cast<std::size_t>(moved)].range);
+    part.control_slots.push_back(kSlotControl + moved);
+  }
+  auto program = curves::compile_function(**found, options);
+  if (!program) return program.error();
+  part.curve = *std::move(program);
+  return {};
+}
+
+Result<void> PatchCompiler::add_surface(const MapSpec& map, PatchProgram::MapPart& part) const {
+  const curves::NurbsSurface* surface = spec_.curves.find_surface(map.surface);
+  if (surface == nullptr) {
+    const auto names = spec_.curves.names();
+    return fail(ErrorCode::unknown_name,
+                "no surface '" + map.surface + "'" + base::suggestion(map.surface, names));
+  }
+  if (surface->dim() != 1) {
+    return fail(ErrorCode::not_scalar, "surface '" + map.surface + "' has " +
+                                           std::to_string(surface->dim()) +
+                                           " coordinates; a map needs 1");
+  }
+  part.source_v = map.source_v;
+  part.source_v_index = map.source_v_index;
+  part.surface = *surface;
   return {};
 }
 
@@ -136,88 +170,18 @@ Result<void> PatchCompiler::compile_map(const MapSpec& map, std::size_t number) 
   }
   part.slot = slot_of(map.target, index);
   if (!map.curve.empty()) {
-    auto found = curve(map.curve, "its curve");
-    if (!found) return found.error();
-    curves::CompileOptions options;
-    for (const int moved : moved_numbers_of(map.curve)) {
-      options.controls.push_back(moved_[static_cast<std::size_t>(moved)].range);
-      part.control_slots.push_back(kSlotControl + moved);
-    }
-    auto program = curves::compile_function(**found, options);
-    if (!program) return program.error();
-    part.curve = *std::move(program);
+    if (auto done = add_curve(map, part); !done) return done;
   } else if (!map.surface.empty()) {
-    const curves::NurbsSurface* surface = spec_.curves.find_surface(map.surface);
-    if (surface == nullptr) {
-      return fail(ErrorCode::unknown_name, "no surface '" + map.surface + "'");
-    }
-    if (surface->dim() != 1) {
-      return fail(ErrorCode::not_scalar, "surface '" + map.surface + "' has " +
-                                             std::to_string(surface->dim()) +
-                                             " coordinates; a map needs 1");
-    }
-    part.source_v = map.source_v;
-    part.source_v_index = map.source_v_index;
-    part.surface = *surface;
+    if (auto done = add_surface(map, part); !done) return done;
   }
   program_->maps_.push_back(std::move(part));
   return {};
 }
 
-// Takes, again and again, the first thing all of whose inputs are computed. What is left over
-// when nothing more can be taken moves itself.
-Result<void> PatchCompiler::make_schedule() {
-  const auto maps = std::span<const PatchProgram::MapPart>(program_->maps_);
-  const std::size_t envelopes = program_->envelopes_.size(), lfos = program_->lfos_.size();
-  std::vector<bool> map_done(maps.size()), envelope_done(envelopes), lfo_done(lfos);
-  const auto slot_is_ready = [&](int slot) {
-    for (std::size_t i = 0; i < maps.size(); ++i) {
-      if (maps[i].slot == slot && !map_done[i]) return false;
-    }
-    return true;
-  };
-  const auto all_ready = [&](const std::vector<int>& slots) {
-    return std::all_of(slots.begin(), slots.end(), slot_is_ready);
-  };
-  const auto source_is_ready = [&](MapSource source, int index) {
-    const auto i = static_cast<std::size_t>(index);
-    return source == MapSource::envelope ? bool(envelope_done[i])
-           : source == MapSource::lfo    ? bool(lfo_done[i])
-                                         : true;
-  };
-  using Kind = PatchProgram::Step::Kind;
-  const std::size_t total = maps.size() + envelopes + lfos;
-  while (program_->schedule_.size() < total) {
-    const std::size_t before = program_->schedule_.size();
-    for (std::size_t i = 0; i < maps.size(); ++i) {
-      const PatchProgram::MapPart& map = maps[i];
-      if (map_done[i] || !source_is_ready(map.source, map.source_index) ||
-          !source_is_ready(map.source_v, map.source_v_index) || !all_ready(map.control_slots))
-        continue;
-      map_done[i] = true;
-      program_->schedule_.push_back({Kind::map, static_cast<int>(i)});
-    }
-    for (std::size_t i = 0; i < envelopes; ++i) {
-      if (envelope_done[i] || !all_ready(program_->envelopes_[i].control_slots)) continue;
-      envelope_done[i] = true;
-      program_->schedule_.push_back({Kind::envelope, static_cast<int>(i)});
-    }
-    for (std::size_t i = 0; i < lfos; ++i) {
-      if (lfo_done[i] || !slot_is_ready(kSlotLfoRate + static_cast<int>(i))) continue;
-      lfo_done[i] = true;
-      program_->schedule_.push_back({Kind::lfo, static_cast<int>(i)});
-    }
-    if (program_->schedule_.size() != before) continue;
-    std::string stuck;
-    for (std::size_t i = 0; i < envelopes; ++i) {
-      if (!envelope_done[i]) stuck += " envelope '" + program_->envelopes_[i].name + "'";
-    }
-    for (std::size_t i = 0; i < lfos; ++i) {
-      if (!lfo_done[i]) stuck += " lfo '" + program_->lfos_[i].name + "'";
-    }
-    return fail(ErrorCode::cyclic_reference,
-                "maps make these depend on themselves:" + (stuck.empty() ? " curves" : stuck));
-  }
+Result<void> PatchCompiler::order_steps() {
+  auto steps = make_schedule(program_->maps_, program_->envelopes_, program_->lfos_);
+  if (!steps) return steps.error();
+  program_->schedule_ = *std::move(steps);
   return {};
 }
 

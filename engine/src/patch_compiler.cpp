@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Envelopes, LFOs and the single parts of a patch. Waves are in compile_waves.cpp, maps and their
-// order in compile_maps.cpp.
+// Envelopes, LFOs and the single parts of a patch. Waves are in compile_waves.cpp, maps in
+// compile_maps.cpp, their order in map_schedule.cpp.
 #include "patch_compiler.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ Result<std::unique_ptr<const PatchProgram>> PatchCompiler::compile() {
   for (auto step : {&PatchCompiler::check_counts, &PatchCompiler::collect_moved_numbers,
                     &PatchCompiler::compile_envelopes, &PatchCompiler::compile_lfos,
                     &PatchCompiler::compile_oscillators, &PatchCompiler::compile_maps,
-                    &PatchCompiler::compile_rest, &PatchCompiler::make_schedule}) {
+                    &PatchCompiler::compile_rest, &PatchCompiler::order_steps}) {
     if (auto done = (this->*step)(); !done) return about(done.error());
   }
   finish_flags();

@@ -36,10 +36,14 @@ class PatchCompiler {
   Result<void> add_default_amp();
   Result<void> compile_lfos();
   Result<void> compile_maps();
+  Result<void> check_source(MapSource source, int index) const;
+  Result<void> check_target(const MapSpec& map) const;
   Result<void> check_map(const MapSpec& map) const;
   Result<void> compile_map(const MapSpec& map, std::size_t number);
   Result<void> compile_rest();
-  Result<void> make_schedule();
+  Result<void> add_curve(const MapSpec& map, PatchProgram::MapPart& part) const;
+  Result<void> add_surface(const MapSpec& map, PatchProgram::MapPart& part) const;
+  Result<void> order_steps();
   void finish_flags();
 
   /// The curve, or unknown_name with a suggestion. `role` is how messages call it.

@@ -99,6 +99,7 @@ class ChannelState {
 
  private:
   Effect data_entry(bool coarse, int value) KNOTWAVE_RT;
+  void select_parameter(int controller, int value) KNOTWAVE_RT;
   void step_data(int step) KNOTWAVE_RT;
   void store(int controller, int value) KNOTWAVE_RT;
 

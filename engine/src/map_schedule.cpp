@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "map_schedule.h"
+
+#include <algorithm>
+#include <string>
+
+namespace knotwave::engine {
+namespace {
+
+using Step = PatchProgram::Step;
+using Kind = PatchProgram::Step::Kind;
+
+class Scheduler {
+ public:
+  Scheduler(std::span<const PatchProgram::MapPart> maps,
+            std::span<const PatchProgram::EnvelopePart> envelopes,
+            std::span<const PatchProgram::LfoPart> lfos)
+      : maps_(maps),
+        envelopes_(envelopes),
+        lfos_(lfos),
+        map_done_(maps.size()),
+        envelope_done_(envelopes.size()),
+        lfo_done_(lfos.size()) {}
+
+  // Takes, again and again, all whose inputs are computed. What is left when nothing more can be
+  // taken moves itself.
+  Result<std::vector<Step>> run() {
+    const std::size_t total = maps_.size() + envelopes_.size() + lfos_.size();
+    while (steps_.size() < total) {
+      const std::size_t before = steps_.size();
+      take(Kind::map, map_done_, [&](std::size_t i) {
+        return source_is_ready(maps_[i].source, maps_[i].source_index) &&
+               source_is_ready(maps_[i].source_v, maps_[i].source_v_index) &&
+               slots_are_ready(maps_[i].control_slots);
+      });
+      take(Kind::envelope, envelope_done_,
+           [&](std::size_t i) { return slots_are_ready(envelopes_[i].control_slots); });
+      take(Kind::lfo, lfo_done_,
+           [&](std::size_t i) { return slot_is_ready(kSlotLfoRate + static_cast<int>(i)); });
+      if (steps_.size() == before) return cycle();
+    }
+    return std::move(steps_);
+  }
+
+ private:
+  template <class Ready>
+  void take(Kind kind, std::vector<bool>& done, Ready&& ready) {
+    for (std::size_t i = 0; i < done.size(); ++i) {
+      if (done[i] || !ready(i)) continue;
+      done[i] = true;
+      steps_.push_back({kind, static_cast<int>(i)});
+    }
+  }
+
+  bool source_is_ready(MapSource source, int index) const {
+    if (source == MapSource::envelope) return envelope_done_[static_cast<std::size_t>(index)];
+    if (source == MapSource::lfo) return lfo_done_[static_cast<std::size_t>(index)];
+    return true;
+  }
+  bool slot_is_ready(int slot) const {
+    for (std::size_t i = 0; i < maps_.size(); ++i) {
+      if (maps_[i].slot == slot && !map_done_[i]) return false;
+    }
+    return true;
+  }
+  bool slots_are_ready(const std::vector<int>& slots) const {
+    return std::all_of(slots.begin(), slots.end(), [&](int slot) { return slot_is_ready(slot); });
+  }
+
+  Error cycle() const {
+    std::string stuck;
+    for (std::size_t i = 0; i < envelopes_.size(); ++i) {
+      if (!envelope_done_[i]) stuck += " envelope '" + envelopes_[i].name + "'";
+    }
+    for (std::size_t i = 0; i < lfos_.size(); ++i) {
+      if (!lfo_done_[i]) stuck += " lfo '" + lfos_[i].name + "'";
+    }
+    if (stuck.empty()) stuck = " curves of maps";
+    return fail(ErrorCode::cyclic_reference, "maps make these depend on themselves:" + stuck);
+  }
+
+  std::span<const PatchProgram::MapPart> maps_;
+  std::span<const PatchProgram::EnvelopePart> envelopes_;
+  std::span<const PatchProgram::LfoPart> lfos_;
+  std::vector<bool> map_done_, envelope_done_, lfo_done_;
+  std::vector<Step> steps_;
+};
+
+}  // namespace
+
+Result<std::vector<PatchProgram::Step>> make_schedule(
+    std::span<const PatchProgram::MapPart> maps,
+    std::span<const PatchProgram::EnvelopePart> envelopes,
+    std::span<const PatchProgram::LfoPart> lfos) {
+  return Scheduler(maps, envelopes, lfos).run();
+}
+
+}  // namespace knotwave::engine

@@ -19,8 +19,8 @@ namespace {
 
 /// The longest run of samples between two looks at the voices.
 constexpr std::size_t kSegment = 256;
-/// Fewer voices than this a thread are not worth a wake.
-constexpr std::size_t kVoicesWorthAThread = 2;
+/// Fewer samples than this over all voices are not worth a wake.
+constexpr std::size_t kSamplesWorthAWake = 1024;
 
 Result<void> check(const EngineConfig& config) {
   const auto outside = [](const char* what, double value, double low, double high) {
@@ -172,7 +172,7 @@ void Engine::State::render_segment(std::size_t n) KNOTWAVE_RT {
     if (slots[i].state != VoiceSlot::State::free) active.push_back(static_cast<int>(i));
   }
   sharing = 1;
-  if (workers && active.size() >= kVoicesWorthAThread * 2) {
+  if (workers && active.size() > 1 && active.size() * n >= kSamplesWorthAWake) {
     sharing = workers->threads();
     workers->run([](void* self, int thread) { static_cast<State*>(self)->render_share(thread); },
                  this);

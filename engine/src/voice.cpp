@@ -98,13 +98,11 @@ void Voice::release(base::SampleTime time, int velocity) KNOTWAVE_RT {
 }
 
 void Voice::fade_out(std::int64_t sample, double seconds) KNOTWAVE_RT {
-  const std::int64_t samples = samples_of(seconds, start_.rate_hz);
-  if (fade_.is_out() && fade_.end() <= sample + samples) return;
-  fade_.start(Fade::Direction::out, sample, samples);
+  fade_.begin_out(sample, samples_of(seconds, start_.rate_hz));
 }
 
 void Voice::fade_in(std::int64_t sample, double seconds) KNOTWAVE_RT {
-  fade_.start(Fade::Direction::in, sample, samples_of(seconds, start_.rate_hz));
+  fade_.begin_in(sample, samples_of(seconds, start_.rate_hz));
 }
 
 void Voice::render(std::int64_t first, const TempoClock& tempo, VoiceScratch& scratch,
@@ -209,12 +207,11 @@ void Voice::end_if_silent(const dsp::Envelope& amp_before, std::int64_t first,
   if (modulation_.envelope(patch_->amp_envelope()).is_idle() && !fade_.is_out()) {
     if (amp.program.end_value() == 0) {
       done_ = true;
-    } else if (amp_before.is_idle()) {
-      fade_.start(Fade::Direction::out, first, samples_of(kStealFadeSeconds, start_.rate_hz));
     } else {
-      const std::size_t until = samples_until_idle(amp_before, amp.program, first, n);
-      fade_.start(Fade::Direction::out, first + static_cast<std::int64_t>(until),
-                  samples_of(kStealFadeSeconds, start_.rate_hz));
+      const std::size_t until =
+          amp_before.is_idle() ? 0 : samples_until_idle(amp_before, amp.program, first, n);
+      fade_.begin_out(first + static_cast<std::int64_t>(until),
+                      samples_of(kStealFadeSeconds, start_.rate_hz));
     }
   }
   if (fade_.is_over(next)) done_ = true;

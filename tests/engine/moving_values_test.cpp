@@ -12,23 +12,37 @@ namespace {
 TEST(Fade, GoesFromOneToExactlyZeroAndBack) {
   Fade fade;
   EXPECT_EQ(fade.at(0), 1.0);
-  fade.start(Fade::Direction::out, 100, 240);
+  EXPECT_FALSE(fade.is_moving(0));
+  fade.begin_out(100, 240);
   EXPECT_EQ(fade.at(100), 1.0);
   EXPECT_EQ(fade.at(220), 0.5);
   EXPECT_EQ(fade.at(340), 0.0);
   EXPECT_FALSE(fade.is_over(339));
   EXPECT_TRUE(fade.is_over(340));
-  fade.start(Fade::Direction::in, 0, 4);
+  fade.reset();
+  fade.begin_in(0, 4);
   EXPECT_EQ(fade.at(0), 0.0);
   EXPECT_EQ(fade.at(4), 1.0);
   EXPECT_FALSE(fade.is_over(1000));
+  EXPECT_FALSE(fade.is_moving(4));
 }
 
 TEST(Fade, InAndOutOfTheSameLengthAddUpToOne) {
   Fade in, out;
-  in.start(Fade::Direction::in, 7, 960);
-  out.start(Fade::Direction::out, 7, 960);
+  in.begin_in(7, 960);
+  out.begin_out(7, 960);
   for (int i = 0; i < 1000; ++i) EXPECT_NEAR(in.at(i) + out.at(i), 1, 1e-15);
+}
+
+TEST(Fade, OutWhileStillComingInIsContinuous) {
+  Fade fade;
+  fade.begin_in(0, 960);
+  const double before = fade.at(480);
+  fade.begin_out(480, 240);
+  EXPECT_EQ(fade.at(480), before);
+  EXPECT_EQ(fade.at(720), 0.0);
+  fade.begin_out(600, 960);  // later than the end it already has
+  EXPECT_TRUE(fade.is_over(720));
 }
 
 TEST(TempoClock, CountsQuarterNotesAcrossTempoChanges) {

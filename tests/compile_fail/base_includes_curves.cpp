@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: MIT
+// base is below curves.
+#ifdef KNOTWAVE_BAD
+#include "knotwave/curves/nurbs_curve.h"
+#else
+#include "knotwave/base/result.h"
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "knotwave/curves/nurbs_curve.h"
+
+#include "bits.h"
+
+namespace knotwave::bits {
+namespace {
+
+constexpr int kCount = 4001;
+
+curves::NurbsCurve make(const curves::CurveSpec& spec) {
+  Result<curves::NurbsCurve> curve = curves::NurbsCurve::create(spec);
+  if (!curve) {
+    std::fprintf(stderr, "%s\n", curve.error().to_string().c_str());
+    std::exit(1);
+  }
+  return *curve;
+}
+
+void print_curve(const char* name, const curves::CurveSpec& spec) {
+  const curves::NurbsCurve curve = make(spec);
+  std::vector<double> values;
+  for (int i = 0; i < kCount; ++i) {
+    double value[3 * curves::kMaxDim] = {};
+    const double u = spread(curve.u_min(), curve.u_max(), i, kCount);
+    curve.derivatives(u, 2, curves::Side::right, {value, static_cast<std::size_t>(3 * spec.dim)});
+    values.insert(values.end(), value, value + 3 * spec.dim);
+  }
+  print(name, values);
+}
+
+}  // namespace
+
+void curves() {
+  print_curve("curve_decay60", {.degree = 4,
+                                .points = {1, 0.15962, 0.030761, 0.0058833, 0.001},
+                                .weights = {0.033544, 0.068924, 0.15018, 0.35327, 1}});
+  print_curve("curve_periodic_cubic",
+              {.degree = 3, .points = {0, 0.7, 1, -0.3, -1, 0.4, -0.2, 0.1}, .periodic = true});
+  print_curve("curve_plane_degree_7",
+              {.degree = 7,
+               .dim = 2,
+               .points = {0, 0, 1, 3, 2, -1, 3, 0.5, 4, 2, 5, -2, 6, 1, 7, 0, 8, 3, 9, 1},
+               .weights = {1, 2, 0.5, 3, 1, 0.1, 7, 1, 1.5, 1}});
+}
+
+}  // namespace knotwave::bits

@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# matrix_test.sh SOURCE_DIR BUILD_DIR CXX [quick|full]: builds the libraries and the subject programs once per
+# row (compiler, -O level, instruction set) with warnings as errors, and compares every line they print. A new
+# subject is a line in bits_*.cpp or in hashes(); a new row is a line at the end.
+set -euo pipefail
+source=$1 build=$2 cxx=$3 size=${4:-quick}
+work=$build/determinism
+mkdir -p "$work"
+
+# What a row prints: NAME HASH, one subject a line.
+hashes() {
+  local bin=$1 score=$source/examples/scores/first-light.mid
+  "$bin/knotwave_bits"
+  [ -x "$bin/knotwave-render" ] || return 0
+  rendered() {
+    local name=$1
+    shift
+    "$bin/knotwave-render" "$source/examples/banks/first-light.toml" "$score" -o "$work/render.wav" \
+      --quiet "$@" | sed -nE "s/.*sha256 ([0-9a-f]{64}).*/render $name \1/p"
+  }
+  rendered block_256 --block 256
+}
+
+# The build the test belongs to is the first row; it is built already.
+hashes "$build/bin" >"$work/this.bits"
+[ -s "$work/this.bits" ] || { echo "this build printed nothing"; exit 1; }
+echo "this build: $(wc -l <"$work/this.bits") subjects"
+
+# row NAME COMPILER FLAGS
+row() {
+  local name=$1 compiler=$2 flags=$3
+  if ! command -v "$compiler" >/dev/null; then
+    echo "$name: no $compiler here, row left out"
+    return
+  fi
+  cmake -S "$source" -B "$work/$name" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" \
+    -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE="$flags" \
+    -DKNOTWAVE_BUILD_EXAMPLES=OFF >"$work/$name.log" 2>&1 || { cat "$work/$name.log"; exit 1; }
+  local targets=(knotwave_bits knotwave_io)
+  if grep -q '^build knotwave-render:' "$work/$name/build.ninja"; then targets+=(knotwave-render); fi
+  cmake --build "$work/$name" --target "${targets[@]}" >"$work/$name.log" 2>&1 ||
+    { tail -n 60 "$work/$name.log"; exit 1; }
+  hashes "$work/$name/bin" >"$work/$name.bits"
+  if ! diff "$work/this.bits" "$work/$name.bits"; then
+    echo "$name differs from this build"
+    exit 1
+  fi
+  echo "$name: the same bits"
+}
+
+row gcc-O0 "$cxx" "-O0"
+row clang-O3 clang++-14 "-O3"
+if [ "$size" = full ]; then
+  row gcc-O3 "$cxx" "-O3"
+  row clang-O0 clang++-14 "-O0"
+  row gcc-O3-v3 "$cxx" "-O3 -march=x86-64-v3"
+  row clang-O3-v3 clang++-14 "-O3 -march=x86-64-v3"
+fi

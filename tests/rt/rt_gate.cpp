@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "rt_gate.h"
+
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <thread>
+
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <ucontext.h>
+#include <unistd.h>
+
+// The sanitizer's functions, there only when its runtime is linked.
+extern "C" {
+__attribute__((weak)) void __rtsan_init();
+__attribute__((weak)) void __rtsan_realtime_enter();
+__attribute__((weak)) void __rtsan_realtime_exit();
+}
+
+namespace knotwave::rt {
+namespace {
+
+volatile sig_atomic_t armed = 0;
+volatile sig_atomic_t refused = 0;
+volatile sig_atomic_t first_refused = -1;
+
+/// A refused call counts while the gate is armed and returns ENOSYS; the thread's own end, which
+/// calls the system as well, does not count.
+void on_refused_call(int, siginfo_t* info, void* context) {
+  if (armed != 0) {
+    if (refused == 0) first_refused = info->si_syscall;
+    refused = refused + 1;
+  }
+#if defined(__x86_64__)
+  static_cast<ucontext_t*>(context)->uc_mcontext.gregs[REG_RAX] = -ENOSYS;
+#elif defined(__aarch64__)
+  static_cast<ucontext_t*>(context)->uc_mcontext.regs[0] = static_cast<unsigned long long>(-ENOSYS);
+#else
+  static_cast<void>(context);
+#endif
+}
+
+/// Refuses every system call of this thread but the few the gate itself needs.
+bool install_filter() {
+#if !defined(__x86_64__) && !defined(__aarch64__)
+  return false;
+#endif
+  constexpr std::array kAllowed = {SYS_rt_sigreturn, SYS_exit, SYS_exit_group, SYS_getrusage};
+  std::array<sock_filter, kAllowed.size() + 3> program{};
+  program[0] = BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr));
+  for (std::size_t i = 0; i < kAllowed.size(); ++i) {
+    const auto to_allow = static_cast<__u8>(kAllowed.size() - i);
+    program[i + 1] =
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<__u32>(kAllowed[i]), to_allow, 0);
+  }
+  program[kAllowed.size() + 1] = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP);
+  program[kAllowed.size() + 2] = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
+  const sock_fprog filter = {static_cast<unsigned short>(program.size()), program.data()};
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return false;
+  return ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &filter) == 0;
+}
+
+}  // namespace
+
+std::string GateReport::findings() const {
+  std::string text;
+  if (system_calls > 0) {
+    text += std::to_string(system_calls) + " system calls, the first is number " +
+            std::to_string(first_call) + "; ";
+  }
+  if (voluntary_waits > 0) text += std::to_string(voluntary_waits) + " voluntary waits; ";
+  if (page_faults > 0) text += std::to_string(page_faults) + " page faults; ";
+  return text;
+}
+
+GateReport run_in_gate(const std::function<void()>& work, const std::function<void()>& prepare) {
+  struct sigaction action {};
+  action.sa_sigaction = on_refused_call;
+  action.sa_flags = SA_SIGINFO;
+  ::sigaction(SIGSYS, &action, nullptr);
+  if (__rtsan_init != nullptr) __rtsan_init();
+  refused = 0;
+  first_refused = -1;
+  GateReport report;
+  report.sanitized = __rtsan_realtime_enter != nullptr;
+  std::thread thread([&] {
+    prepare();
+    rusage before{};
+    rusage after{};
+    ::getrusage(RUSAGE_THREAD, &before);  // once before, so that its own page is there
+    report.filtered = install_filter();
+    ::getrusage(RUSAGE_THREAD, &before);
+    armed = 1;
+    if (__rtsan_realtime_enter != nullptr) __rtsan_realtime_enter();
+    work();
+    if (__rtsan_realtime_exit != nullptr) __rtsan_realtime_exit();
+    armed = 0;
+    ::getrusage(RUSAGE_THREAD, &after);
+    report.voluntary_waits = after.ru_nvcsw - before.ru_nvcsw;
+    report.page_faults = after.ru_minflt - before.ru_minflt + after.ru_majflt - before.ru_majflt;
+  });
+  thread.join();
+  report.system_calls = refused;
+  report.first_call = first_refused;
+  return report;
+}
+
+}  // namespace knotwave::rt

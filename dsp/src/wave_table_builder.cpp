@@ -54,7 +54,7 @@ int table_size_log2(std::span<const double> strongest, int harmonics) {
     for (int n = 1; n <= harmonics && clean; ++n) {
       clean = strongest[static_cast<std::size_t>(n)] * image_gain(n, size) <= allowed;
     }
-    if (clean || size >= largest) return std::bit_width(size) - 1;
+    if (clean || size >= largest) return static_cast<int>(std::bit_width(size)) - 1;
   }
 }
 

@@ -15,9 +15,11 @@
 namespace knotwave::rt {
 namespace {
 
-TEST(BaseInTheGate, ElementaryFunctionsRandomNumbersAndTime) {
+class BaseInTheGate : public testing::TestWithParam<Gate> {};
+
+TEST_P(BaseInTheGate, ElementaryFunctionsRandomNumbersAndTime) {
   std::array<double, 512> values{};
-  const GateReport report = run_in_gate([&] {
+  const GateReport report = run_in_gate(GetParam(), [&] {
     const base::FpStateGuard guard;
     const base::RandomStream random{1, 2, 3};
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -31,11 +33,11 @@ TEST(BaseInTheGate, ElementaryFunctionsRandomNumbersAndTime) {
   EXPECT_EQ(report.findings(), "");
 }
 
-TEST(BaseInTheGate, TakingAndReturningAnObject) {
+TEST_P(BaseInTheGate, TakingAndReturningAnObject) {
   base::HandOver<int> hand_over(4);
   for (int i = 0; i < 4; ++i) hand_over.publish(std::make_unique<int>(i));
   int seen = 0;
-  const GateReport report = run_in_gate([&] {
+  const GateReport report = run_in_gate(GetParam(), [&] {
     while (int* object = hand_over.acquire()) {
       seen += *object;
       hand_over.release(object);
@@ -46,6 +48,11 @@ TEST(BaseInTheGate, TakingAndReturningAnObject) {
   hand_over.collect();
   EXPECT_EQ(hand_over.objects_out(), 0u);
 }
+
+INSTANTIATE_TEST_SUITE_P(Both, BaseInTheGate, testing::Values(Gate::sanitizer, Gate::system),
+                         [](const auto& gate) {
+                           return gate.param == Gate::sanitizer ? "sanitizer" : "system";
+                         });
 
 }  // namespace
 }  // namespace knotwave::rt

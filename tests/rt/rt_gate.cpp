@@ -78,7 +78,37 @@ std::string GateReport::findings() const {
   return text;
 }
 
-GateReport run_in_gate(const std::function<void()>& work, const std::function<void()>& prepare) {
+namespace {
+
+GateReport run_sanitized(const std::function<void()>& work) {
+  GateReport report;
+  report.watched = __rtsan_realtime_enter != nullptr;
+  if (report.watched) __rtsan_realtime_enter();
+  work();
+  if (report.watched) __rtsan_realtime_exit();
+  return report;
+}
+
+GateReport run_filtered(const std::function<void()>& work) {
+  GateReport report;
+  rusage before{};
+  rusage after{};
+  ::getrusage(RUSAGE_THREAD, &before);  // once before, so that what it touches is there
+  report.watched = install_filter();
+  ::getrusage(RUSAGE_THREAD, &before);
+  armed = 1;
+  work();
+  armed = 0;
+  ::getrusage(RUSAGE_THREAD, &after);
+  report.voluntary_waits = after.ru_nvcsw - before.ru_nvcsw;
+  report.page_faults = after.ru_minflt - before.ru_minflt + after.ru_majflt - before.ru_majflt;
+  return report;
+}
+
+}  // namespace
+
+GateReport run_in_gate(Gate gate, const std::function<void()>& work,
+                       const std::function<void()>& prepare) {
   struct sigaction action {};
   action.sa_sigaction = on_refused_call;
   action.sa_flags = SA_SIGINFO;
@@ -87,22 +117,9 @@ GateReport run_in_gate(const std::function<void()>& work, const std::function<vo
   refused = 0;
   first_refused = -1;
   GateReport report;
-  report.sanitized = __rtsan_realtime_enter != nullptr;
   std::thread thread([&] {
     prepare();
-    rusage before{};
-    rusage after{};
-    ::getrusage(RUSAGE_THREAD, &before);  // once before, so that its own page is there
-    report.filtered = install_filter();
-    ::getrusage(RUSAGE_THREAD, &before);
-    armed = 1;
-    if (__rtsan_realtime_enter != nullptr) __rtsan_realtime_enter();
-    work();
-    if (__rtsan_realtime_exit != nullptr) __rtsan_realtime_exit();
-    armed = 0;
-    ::getrusage(RUSAGE_THREAD, &after);
-    report.voluntary_waits = after.ru_nvcsw - before.ru_nvcsw;
-    report.page_faults = after.ru_minflt - before.ru_minflt + after.ru_majflt - before.ru_majflt;
+    report = gate == Gate::sanitizer ? run_sanitized(work) : run_filtered(work);
   });
   thread.join();
   report.system_calls = refused;

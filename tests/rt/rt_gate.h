@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Runs a piece of audio work as the audio thread would and finds what it must not do:
-//   1. the RealtimeSanitizer runtime stops the program at malloc, free, locks, files, sleeps,
-//   throw;
-//   2. a seccomp filter on the thread catches every system call the sanitizer does not know;
-//   3. getrusage counts voluntary context switches and page faults.
+// Runs a piece of audio work as the audio thread would and finds what it must not do. Two kinds of
+// run, since the sanitizer's report needs the system calls the filter refuses:
+//   sanitizer: the RealtimeSanitizer runtime ends the program at malloc, free, locks, files, sleeps
+//              and throw;
+//   system:    a seccomp filter on the thread refuses and counts every system call, and getrusage
+//              counts voluntary waits and page faults.
 // See docs/realtime-rules.md. Source of the sanitizer's interface: LLVM compiler-rt,
 // rtsan_interface.h.
 #pragma once
@@ -12,9 +13,10 @@
 
 namespace knotwave::rt {
 
+enum class Gate { sanitizer, system };
+
 struct GateReport {
-  bool sanitized = false;    ///< the sanitizer's runtime is linked
-  bool filtered = false;     ///< the filter was installed
+  bool watched = false;      ///< the sanitizer's runtime is linked, or the filter was installed
   int system_calls = 0;      ///< calls the filter refused
   int first_call = -1;       ///< number of the first of them
   long voluntary_waits = 0;  ///< voluntary context switches
@@ -24,9 +26,9 @@ struct GateReport {
   std::string findings() const;
 };
 
-/// Calls `prepare` and then `work` on a thread of its own; only `work` is inside the gate. A hit of
-/// the sanitizer prints a stack and ends the program. Not reentrant.
+/// Calls `prepare` and then `work` on a thread of its own; only `work` is inside the gate. What
+/// work() touches first costs a page fault: let prepare() touch it. Not reentrant.
 GateReport run_in_gate(
-    const std::function<void()>& work, const std::function<void()>& prepare = [] {});
+    Gate gate, const std::function<void()>& work, const std::function<void()>& prepare = [] {});
 
 }  // namespace knotwave::rt

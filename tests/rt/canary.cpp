@@ -69,7 +69,7 @@ void make_function() {
 }
 void to_stream() {
   std::ostringstream stream;
-  stream << 1.5;
+  stream << "a text longer than what a string holds in itself" << 1.5;
   escaped = &stream;
 }
 void throw_and_catch() {

@@ -14,7 +14,9 @@ namespace knotwave::base {
 namespace {
 
 constexpr std::size_t kMaxPath = 4096;
-enum SlotState : int { kFree, kFilling, kNamed };
+constexpr int kFree = 0;
+constexpr int kFilling = 1;
+constexpr int kNamed = 2;
 
 struct Slot {
   std::atomic<int> state{kFree};

@@ -32,7 +32,7 @@ constexpr std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> c
 struct RandomStream {
   std::uint64_t seed = 0;     ///< the patch seed
   std::uint32_t voice = 0;    ///< which note, counted from engine time 0
-  std::uint32_t purpose = 0;  ///< one constant per use; see the enum below
+  std::uint32_t purpose = 0;  ///< one constant per use; see below
 
   /// Number `index` of the stream, uniform over 64 bits. [any]
   std::uint64_t bits(std::uint64_t index) const KNOTWAVE_RT;
@@ -43,12 +43,10 @@ struct RandomStream {
 };
 
 /// Purposes in use; numbers never change, because they are part of the sound.
-enum RandomPurpose : std::uint32_t {
-  kRandomNoise = 1,
-  kRandomLfo = 2,
-  kRandomPhase = 3,
-  kRandomMap = 4,
-  kRandomDither = 5,
-};
+inline constexpr std::uint32_t kRandomNoise = 1;
+inline constexpr std::uint32_t kRandomLfo = 2;
+inline constexpr std::uint32_t kRandomPhase = 3;
+inline constexpr std::uint32_t kRandomMap = 4;
+inline constexpr std::uint32_t kRandomDither = 5;
 
 }  // namespace knotwave::base

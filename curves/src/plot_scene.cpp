@@ -70,7 +70,7 @@ std::string element(const Shape& shape) {
       const bool area = shape.kind == Shape::Kind::area;
       return "<path d=\"" + path + (area ? "Z\"" : "\"") +
              (area ? paint("fill", shape.fill) : std::string(" fill=\"none\"")) + outline(shape) +
-             " stroke-linejoin=\"round\"/>";
+             "/>";
     }
     case Shape::Kind::disc:
       return "<circle cx=\"" + pixels(at.x) + "\" cy=\"" + pixels(at.y) + "\" r=\"" +
@@ -134,11 +134,12 @@ void Scene::text(Point at, std::string words, Color color, double size, Shape::A
 
 std::string svg_of(const Scene& scene) {
   const std::string width = std::to_string(scene.width), height = std::to_string(scene.height);
-  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" +
-                    height + "\" viewBox=\"0 0 " + width + " " + height +
-                    "\" font-family=\"Helvetica, Arial, sans-serif\">\n<title>" +
-                    escaped(scene.title) + "</title>\n<rect width=\"" + width + "\" height=\"" +
-                    height + "\" fill=\"#ffffff\"/>\n";
+  std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height +
+      "\" viewBox=\"0 0 " + width + " " + height +
+      "\" font-family=\"Helvetica, Arial, sans-serif\" stroke-linejoin=\"round\">\n<title>" +
+      escaped(scene.title) + "</title>\n<rect width=\"" + width + "\" height=\"" + height +
+      "\" fill=\"#ffffff\"/>\n";
   for (const Shape& shape : scene.shapes) svg += element(shape) + "\n";
   return svg + "</svg>\n";
 }

@@ -168,6 +168,21 @@ TEST_F(CurveApp, PlotWritesTheFileItsEndingAsksForOrText) {
               StartsWith("wave  degree 3, 4 points, periodic\n"));
 }
 
+// tools/make_curve_pictures.py draws them; docs/curves.md shows them.
+TEST_F(CurveApp, PicturesOfTheDocumentationAreWhatItDraws) {
+  const std::string folder = KNOTWAVE_SOURCE_DIR "/docs/pictures/";
+  const auto set = curves::read_curves(folder + "curves.toml");
+  ASSERT_TRUE(set) << set.error().to_string();
+  ASSERT_GE(set->names().size(), 8u);
+  for (const auto name : set->names()) {
+    const std::string picture = std::string(name) + ".svg", drawn = folder_.file(picture);
+    ASSERT_EQ(run({"plot", folder + "curves.toml#" + std::string(name), "-o", drawn}).exit_code, 0);
+    const auto committed = base::read_file(folder + picture, 1 << 24);
+    ASSERT_TRUE(committed) << committed.error().message;
+    EXPECT_TRUE(*committed == *base::read_file(drawn, 1 << 24)) << picture;
+  }
+}
+
 TEST_F(CurveApp, FaultsOfUseEndWith2AndSayWhatWasMeant) {
   const auto says = [&](std::vector<std::string> words, const std::string& message) {
     const ProgramRun wrong = run(words);

@@ -31,8 +31,9 @@ NurbsCurve curve_of(int degree, bool rational) {
 
 void report(benchmark::State& state) {
   using benchmark::Counter;
-  state.counters["ns/sample"] = Counter(1e-9 * kSamples * static_cast<double>(state.iterations()),
-                                        Counter::kIsRate | Counter::kInvert);
+  state.counters["time/sample"] =
+      Counter(static_cast<double>(kSamples) * static_cast<double>(state.iterations()),
+              Counter::kIsRate | Counter::kInvert);
 }
 
 /// One dimension, no weights; `triangle` has (p + 1)^2 numbers.

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "knotwave/base/random.h"
+#include "knotwave/curves/curve_program.h"
 #include "knotwave/curves/nurbs_curve.h"
 
 namespace knotwave::curves::testing {

@@ -168,6 +168,16 @@ TEST(CompileTime, AcceptsExactlyTheHandlesOfTheEllipseCondition) {
   EXPECT_GT(refused, 100);
 }
 
+TEST(CompileTime, TakesThePiecesThatCompileMdPrints) {
+  EXPECT_EQ(compiled(easing(.42, 0, .58, 1)).piece_count(), 4);
+  EXPECT_EQ(compiled(easing(.25, .1, .25, 1)).piece_count(), 6);
+  EXPECT_EQ(compiled(easing(0, 0, 1. / 3, 1)).piece_count(), 10);
+  EXPECT_EQ(compiled(easing(.9, 0, .1, 1)).piece_count(), 14);
+  EXPECT_EQ(compiled(easing(0, 1, 0, 1)).piece_count(), 67);
+  EXPECT_EQ(compiled(easing(4. / 3, 0, 2. / 3, 1)).piece_count(), 101);
+  EXPECT_EQ(compiled(easing(1, 0, 0, 1)).piece_count(), 106);
+}
+
 TEST(CompileTime, NamesTheIntervalWhereTimeGoesBack) {
   const auto program = compile_function(easing(2, 0.3, -1, 0.6));
   ASSERT_FALSE(program);

@@ -234,6 +234,7 @@ HWY_EXPORT(target_name);
 
 // Null only while other static objects are being made: the baseline serves until then.
 std::atomic<const GridKernels*> kernels_in_use = HWY_DYNAMIC_DISPATCH(kernels)();
+std::atomic<SimdLevel> level_in_use = SimdLevel::best;
 std::atomic<const char*> name_in_use = HWY_DYNAMIC_DISPATCH(target_name)();
 }  // namespace
 
@@ -244,9 +245,12 @@ const GridKernels& grid_kernels() KNOTWAVE_RT {
 
 void set_simd_level(SimdLevel level) {
   const bool baseline = level == SimdLevel::baseline;
+  level_in_use = level;
   kernels_in_use = baseline ? HWY_STATIC_DISPATCH(kernels)() : HWY_DYNAMIC_DISPATCH(kernels)();
   name_in_use = baseline ? HWY_STATIC_DISPATCH(target_name)() : HWY_DYNAMIC_DISPATCH(target_name)();
 }
+
+SimdLevel simd_level() KNOTWAVE_RT { return level_in_use.load(std::memory_order_relaxed); }
 
 const char* simd_level_name() { return name_in_use; }
 

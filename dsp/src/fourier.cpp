@@ -67,19 +67,46 @@ void add_by_quadrature(const Piece& piece, std::size_t last, std::span<Complex> 
   }
 }
 
-/// p^(j) at both ends for every j.
+/// e^{-2 pi i n x} for n = 0, 1, ...: sixteen by sin and cos, then sixteen running products side by
+/// side, whose error after 2048 is 128 roundings.
+void fill_turns(double x, std::span<Complex> turns) {
+  constexpr std::size_t kChains = 16;
+  const Complex step = unit(-static_cast<double>(kChains) * x);
+  for (std::size_t n = 0; n < turns.size(); ++n) {
+    turns[n] = n < kChains ? unit(-static_cast<double>(n) * x) : product(turns[n - kChains], step);
+  }
+}
+
+/// p^(j)(0) and p^(j)(1) for every j, with the signs of (-i)^(j + 1): j = 0, 2, ... give the
+/// imaginary part of the sum, j = 1, 3, ... the real part.
 struct EndDerivatives {
-  std::array<double, kMaxDegree + 1> at0{}, at1{};
-  int count = 0;
+  std::array<double, (kMaxDegree + 1) / 2> imaginary{}, real{};
+
+  /// sum_j p^(j) / (i theta)^(j + 1)
+  Complex sum(double inverse_theta) const {
+    const double square = inverse_theta * inverse_theta;
+    double re = 0, im = 0;
+    for (std::size_t k = real.size(); k-- > 0;) {
+      re = re * square + real[k];
+      im = im * square + imaginary[k];
+    }
+    return {re * square, im * inverse_theta};
+  }
 };
-EndDerivatives end_derivatives(std::span<const double> coefficients) {
+
+struct BothEnds {
+  EndDerivatives at0, at1;
+};
+BothEnds end_derivatives(std::span<const double> coefficients) {
   std::array<double, kMaxDegree + 1> p{};
   std::copy(coefficients.begin(), coefficients.end(), p.begin());
-  EndDerivatives ends;
-  ends.count = static_cast<int>(coefficients.size());
+  BothEnds ends;
   for (std::size_t j = 0, size = coefficients.size(); size > 0; ++j, --size) {
-    ends.at0[j] = p[0];
-    ends.at1[j] = horner(std::span(p).first(size), 1.0);
+    const double sign = j % 4 < 2 ? -1 : 1;  // -i, -1, i, 1
+    const double at0 = sign * p[0];
+    const double at1 = sign * horner(std::span(p).first(size), 1.0);
+    (j % 2 == 0 ? ends.at0.imaginary : ends.at0.real)[j / 2] = at0;
+    (j % 2 == 0 ? ends.at1.imaginary : ends.at1.real)[j / 2] = at1;
     for (std::size_t k = 1; k < size; ++k) p[k - 1] = p[k] * static_cast<double>(k);
   }
   return ends;
@@ -88,18 +115,12 @@ EndDerivatives end_derivatives(std::span<const double> coefficients) {
 /// Harmonics first.. from the derivatives at both ends; left and right are e^{-2 pi i n x} there.
 void add_by_parts(const Piece& piece, std::size_t first, std::span<const Complex> left,
                   std::span<const Complex> right, std::span<Complex> out) {
-  const EndDerivatives ends = end_derivatives(piece.coefficients);
+  const BothEnds ends = end_derivatives(piece.coefficients);
   for (std::size_t n = first; n < out.size(); ++n) {
     const double inverse_theta = 1.0 / (2 * kPi * static_cast<double>(n) * piece.width);
-    Complex at0, at1;
-    for (int j = ends.count - 1; j >= 0; --j) {  // Horner in 1 / (i theta) = -i / theta
-      const auto k = static_cast<std::size_t>(j);
-      at0 += ends.at0[k];
-      at1 += ends.at1[k];
-      at0 = Complex(at0.imag() * inverse_theta, -at0.real() * inverse_theta);
-      at1 = Complex(at1.imag() * inverse_theta, -at1.real() * inverse_theta);
-    }
-    out[n] += (product(at0, left[n]) - product(at1, right[n])) * piece.width;
+    const Complex at0 = product(ends.at0.sum(inverse_theta), left[n]);
+    const Complex at1 = product(ends.at1.sum(inverse_theta), right[n]);
+    out[n] += (at0 - at1) * piece.width;
   }
 }
 
@@ -127,7 +148,7 @@ std::vector<Complex> fourier_coefficients(const curves::CurveProgram& cycle, int
     const double end = (breaks[i + 1] - cycle.u_min()) / period;
     const auto split = static_cast<std::size_t>(
         std::min(static_cast<double>(out.size()), kGaussCycles / piece.width + 1));
-    for (std::size_t n = 1; n < out.size(); ++n) right[n] = unit(-static_cast<double>(n) * end);
+    fill_turns(end, right);
     out[0] += mean(piece.coefficients) * piece.width;
     add_by_quadrature(piece, split - 1, out);
     add_by_parts(piece, split, left, right, out);

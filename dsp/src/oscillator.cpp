@@ -37,6 +37,14 @@ constexpr base::Phase part_of(base::Phase increment, std::uint32_t lead) KNOTWAV
   return {backwards ? std::uint64_t(0) - part : part};
 }
 
+/// base::phase_from_cycles(), without a call where |cycles| < 2^22 (exact: 24 significant bits).
+base::Phase offset_phase(float cycles) KNOTWAVE_RT {
+  const double exact = double(cycles);
+  if (!(exact > -0x1p22 && exact < 0x1p22)) return base::phase_from_cycles(exact);
+  const double part = exact - static_cast<double>(static_cast<std::int64_t>(exact));
+  return {static_cast<std::uint64_t>(static_cast<std::int64_t>(part * 0x1p62)) << 2};
+}
+
 /// A level is dropped at once when its highest harmonic would fold below a third of the sample
 /// rate: 4/3 of its limit. Otherwise it is faded out and folds, if at all, above that.
 bool folds_low(const WaveTables& tables, int level, std::uint64_t step) KNOTWAVE_RT {
@@ -50,7 +58,7 @@ bool folds_low(const WaveTables& tables, int level, std::uint64_t step) KNOTWAVE
 struct TableOscillator::Chunk {
   std::span<const base::Phase> phases;
   const WaveTables::RowBlend* blends;
-  int blend_step;
+  std::size_t blend_step;
   std::span<float> left, right;
 };
 
@@ -99,13 +107,17 @@ int TableOscillator::steady_run(const WaveTables& tables,
 }
 
 void TableOscillator::render_chunk(const WaveTables& tables, const Chunk& chunk) KNOTWAVE_RT {
+  const TableKernels& kernels = table_kernels_in_use();
   const auto channels = static_cast<std::size_t>(tables.channels());
   const auto read = [&](int level, std::size_t channel, float* out) {
     const WaveTables::LevelView view = tables.level_view(level);
     const TableRow row = {view.data + view.stride * channel, view.stride * channels,
                           view.size_log2};
-    tables.rows() == 1 ? read_row(row, chunk.phases, out)
-                       : read_blended(row, chunk.blends, chunk.blend_step, chunk.phases, out);
+    if (tables.rows() == 1) {
+      kernels.row(row, chunk.phases, out);
+    } else {
+      kernels.blended(row, chunk.blends, chunk.blend_step, chunk.phases, out);
+    }
   };
   const std::size_t count = chunk.phases.size();
   const std::size_t heard = chunk.right.empty() ? 1 : channels;
@@ -143,13 +155,15 @@ void TableOscillator::render(const WaveTables& tables, std::span<const base::Pha
       phase_ = phase_ + part_of(increments[0], lead_);
       fresh_ = false;
     }
+    base::Phase phase = phase_;  // in a register: a store to phases could be one to phase_
     for (std::size_t i = 0; i < steady; ++i) {
-      phases[i] = phase_;
-      phase_ = phase_ + increments[begin + i];
+      phases[i] = phase;
+      phase = phase + increments[begin + i];
     }
+    phase_ = phase;
     if (!phase_offset.empty()) {
       for (std::size_t i = 0; i < steady; ++i) {
-        phases[i] = phases[i] + base::phase_from_cycles(double(phase_offset[begin + i]));
+        phases[i] = phases[i] + offset_phase(phase_offset[begin + i]);
       }
     }
     bool varies = false;
@@ -162,7 +176,7 @@ void TableOscillator::render(const WaveTables& tables, std::span<const base::Pha
         blends[i] = tables.blend_at(double(chunk_positions[i]));
       }
     }
-    render_chunk(tables, {std::span(phases).first(steady), blends.data(), varies ? 1 : 0,
+    render_chunk(tables, {std::span(phases).first(steady), blends.data(), varies ? 1U : 0U,
                           out_left.subspan(begin, steady),
                           out_right.empty() ? out_right : out_right.subspan(begin, steady)});
     if (fade_left_ > 0) {

@@ -13,6 +13,8 @@
 namespace knotwave::dsp {
 namespace {
 
+using Polynomial = WaveTableBuilder::Polynomial;
+
 constexpr int kMaxRowsFitted = 1024;
 constexpr int kMaxHalvings = 16;
 
@@ -22,7 +24,6 @@ std::string text(double number) {
 }
 
 /// polynomial * (constant + slope * t), ascending powers.
-using Polynomial = std::array<double, WaveTables::kMaxBlended>;
 Polynomial times_linear(const Polynomial& p, double constant, double slope) {
   Polynomial out{};
   for (std::size_t k = 0; k < p.size(); ++k) {
@@ -86,6 +87,15 @@ double amplitude_sum(std::span<const std::complex<double>> harmonics) {
 
 }  // namespace
 
+void WaveTableBuilder::add_blend(double start, WaveTables::BlendPiece piece,
+                                 std::span<const Polynomial> weights) {
+  for (std::size_t k = 0; k < WaveTables::kMaxBlended; ++k) {
+    for (std::size_t r = 0; r < weights.size(); ++r) piece.power[k][r] = weights[r][k];
+  }
+  tables_.blend_starts_.push_back(start);
+  tables_.blends_.push_back(piece);
+}
+
 void WaveTableBuilder::blend_by_basis(std::span<const double> knots, int degree) {
   KNOTWAVE_ASSERT(degree < WaveTables::kMaxBlended);
   const auto p = static_cast<std::size_t>(degree);
@@ -93,25 +103,24 @@ void WaveTableBuilder::blend_by_basis(std::span<const double> knots, int degree)
   const double low = knots[p];
   const double length = knots[rows] - low;
   tables_.blends_.clear();
+  tables_.blend_starts_.clear();
   for (std::size_t span = p; span < rows; ++span) {
     const double width = knots[span + 1] - knots[span];
     if (!(width > 0)) continue;
     const auto basis = span_basis(knots, degree, span);
     WaveTables::BlendPiece piece;
-    piece.start = (knots[span] - low) / length;
     piece.inverse_width = length / width;
     piece.first = static_cast<int>(span - p);
     piece.count = degree + 1;
     piece.degree = degree;
-    for (std::size_t r = 0; r <= p; ++r)
-      std::copy(basis[r].begin(), basis[r].end(), piece.power[r]);
-    tables_.blends_.push_back(piece);
+    add_blend((knots[span] - low) / length, piece, basis);
   }
 }
 
 void WaveTableBuilder::blend_linearly() {
   if (rows_ == 1) {
     tables_.blends_.assign(1, WaveTables::BlendPiece());
+    tables_.blend_starts_.assign(1, 0.0);
     return;
   }
   std::vector<double> knots = {0};
@@ -123,15 +132,11 @@ void WaveTableBuilder::blend_linearly() {
 void WaveTableBuilder::blend_by_interpolation(double start, double end, int first) {
   const auto basis = lagrange_basis();
   WaveTables::BlendPiece piece;
-  piece.start = start;
   piece.inverse_width = 1 / (end - start);
   piece.first = first;
   piece.count = kFitRows;
   piece.degree = kFitRows - 1;
-  for (std::size_t r = 0; r < basis.size(); ++r) {
-    std::copy(basis[r].begin(), basis[r].end(), piece.power[r]);
-  }
-  tables_.blends_.push_back(piece);
+  add_blend(start, piece, basis);
 }
 
 double WaveTableBuilder::fit_node(int k) {

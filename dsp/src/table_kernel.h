@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The inner loop of the table oscillator: six taps of a uniform quintic B-spline. Samples lie in
-// the lanes of 128-bit vectors, which every processor we run on has, so there is one kernel and no
-// dispatch; each lane does what read_one() does, in its order, and gives its bits.
+// The inner loops of the table oscillator: six taps of a uniform quintic B-spline.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -19,14 +17,20 @@ struct TableRow {
   int size_log2;
 };
 
-/// out[i] = the table at phases[i]. [audio]
-void read_row(TableRow row, std::span<const base::Phase> phases, float* out) KNOTWAVE_RT;
+/// Every pair of functions gives the bits of read_one(). [audio]
+struct TableKernels {
+  /// out[i] = the table at phases[i].
+  void (*row)(const TableRow& row, std::span<const base::Phase> phases, float* out);
+  /// The same with rows blended, by blends[i * step], step 0 or 1; `row` is row 0.
+  void (*blended)(const TableRow& row, const WaveTables::RowBlend* blends, std::size_t step,
+                  std::span<const base::Phase> phases, float* out);
+};
 
-/// The same with rows blended; blends[i * blend_step], blend_step 0 or 1. `row` is row 0. [audio]
-void read_blended(TableRow row, const WaveTables::RowBlend* blends, int blend_step,
-                  std::span<const base::Phase> phases, float* out) KNOTWAVE_RT;
+/// Those of the vector unit curves::simd_level() asks for. [audio]
+const TableKernels& table_kernels_in_use() KNOTWAVE_RT;
 
-/// One sample in plain C++. [audio]
-float read_one(TableRow row, const WaveTables::RowBlend& blend, base::Phase phase) KNOTWAVE_RT;
+/// One sample. [audio]
+float read_one(const TableRow& row, const WaveTables::RowBlend& blend,
+               base::Phase phase) KNOTWAVE_RT;
 
 }  // namespace knotwave::dsp

@@ -86,6 +86,8 @@ WaveTableBuilder::WaveTableBuilder(int channels, const WaveTableOptions& options
     : options_(options) {
   tables_.channels_ = channels;
   tables_.coefficients_.clear();
+  tables_.blends_.clear();
+  tables_.blend_starts_.clear();
 }
 
 void WaveTableBuilder::add_row(RowHarmonics row) {

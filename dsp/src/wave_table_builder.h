@@ -37,12 +37,16 @@ class WaveTableBuilder {
 
   void note_fit_error(double error);
 
+  /// Ascending powers.
+  using Polynomial = std::array<double, WaveTables::kMaxBlended>;
+
   /// Errors: value_out_of_range (more than kMaxTableBytes would be needed).
   Result<WaveTables> finish();
   static constexpr std::size_t kMaxTableBytes = std::size_t(1) << 29;
 
  private:
   explicit WaveTableBuilder(int channels, const WaveTableOptions& options);
+  void add_blend(double start, WaveTables::BlendPiece piece, std::span<const Polynomial> weights);
   std::vector<double> strongest_by_harmonic() const;
   void plan_levels(std::span<const double> strongest, int harmonics);
   void fill_level(int level);

@@ -10,6 +10,7 @@ namespace knotwave::dsp {
 WaveTables::WaveTables()
     : levels_(1),
       blends_(1),
+      blend_starts_(1),
       tables_(table_stride(levels_[0].size_log2)),
       coefficients_(1, {0, 0}) {}
 
@@ -36,23 +37,40 @@ int WaveTables::level_for(base::Phase increment) const KNOTWAVE_RT {
   return level;
 }
 
+namespace {
+
+/// weight[r] = sum_k power[k][r] t^k for Rows rows: the rows are the lanes of a vector.
+template <int Rows>
+void weights_at(const double (&power)[WaveTables::kMaxBlended][WaveTables::kMaxBlended], int degree,
+                double t, float* weight) KNOTWAVE_RT {
+  double sum[Rows];
+  for (int r = 0; r < Rows; ++r) sum[r] = power[degree][r];
+  for (int k = degree - 1; k >= 0; --k) {
+    for (int r = 0; r < Rows; ++r) sum[r] = sum[r] * t + power[k][r];
+  }
+  for (int r = 0; r < Rows; ++r) weight[r] = static_cast<float>(sum[r]);
+}
+
+}  // namespace
+
 WaveTables::RowBlend WaveTables::blend_at(double position) const KNOTWAVE_RT {
   if (!(position > 0)) position = 0;
   if (position > 1) position = 1;
-  std::size_t low = 0, high = blends_.size();  // the last piece that starts at or before position
-  while (high - low > 1) {
-    const std::size_t middle = (low + high) / 2;
-    (blends_[middle].start <= position ? low : high) = middle;
+  std::size_t found = 0;  // the last piece that starts at or before position
+  for (std::size_t left = blend_starts_.size(); left > 1;) {
+    const std::size_t half = left / 2;
+    found = blend_starts_[found + half] <= position ? found + half : found;
+    left -= half;
   }
-  const BlendPiece& piece = blends_[low];
+  const BlendPiece& piece = blends_[found];
   RowBlend blend;
   blend.first = piece.first;
   blend.count = piece.count;
-  const double t = (position - piece.start) * piece.inverse_width;
-  for (int r = 0; r < piece.count; ++r) {
-    double weight = piece.power[r][piece.degree];
-    for (int k = piece.degree - 1; k >= 0; --k) weight = weight * t + piece.power[r][k];
-    blend.weight[r] = static_cast<float>(weight);
+  const double t = (position - blend_starts_[found]) * piece.inverse_width;
+  if (piece.count <= 4) {
+    weights_at<4>(piece.power, piece.degree, t, blend.weight);
+  } else {
+    weights_at<8>(piece.power, piece.degree, t, blend.weight);
   }
   return blend;
 }

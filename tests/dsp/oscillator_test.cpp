@@ -147,10 +147,13 @@ TEST(TableOscillatorAlias, AGlideOverALevelLeavesNothingBelow16kHz) {
       std::vector<double> rest(kSize);
       Phase phase;
       for (std::size_t i = 0; i < kSize; ++i) {
+        const double angle = 2 * kPi * phase.cycles();
+        const std::complex<double> turn(std::cos(angle), std::sin(angle));
+        std::complex<double> power = 1;
         double shared = 0;
         for (int n = 1; n <= common; ++n) {
-          const double turns = Phase{phase.value * static_cast<std::uint64_t>(n)}.cycles();
-          shared -= 2 / (kPi * n) * std::sin(2 * kPi * turns);
+          power *= turn;
+          shared -= 2 / (kPi * n) * power.imag();
         }
         const double window = std::sin(kPi * (static_cast<double>(i) + 0.5) / kSize);
         const double w2 = window * window, w8 = w2 * w2 * w2 * w2;
@@ -194,7 +197,21 @@ TEST(TableOscillator, AnySplitIntoBlocksGivesTheSameBits) {
   }
 }
 
-TEST(TableOscillator, GivesTheBitsOfReadSampleBySample) {
+/// Best vector unit, then baseline; best again at the end.
+class EverySimdLevel : public testing::TestWithParam<knotwave::curves::SimdLevel> {
+ protected:
+  void SetUp() override { knotwave::curves::set_simd_level(GetParam()); }
+  void TearDown() override { knotwave::curves::set_simd_level(knotwave::curves::SimdLevel::best); }
+};
+INSTANTIATE_TEST_SUITE_P(TableOscillator, EverySimdLevel,
+                         testing::Values(knotwave::curves::SimdLevel::best,
+                                         knotwave::curves::SimdLevel::baseline),
+                         [](const auto& level) {
+                           return level.param == knotwave::curves::SimdLevel::best ? "best"
+                                                                                   : "baseline";
+                         });
+
+TEST_P(EverySimdLevel, GivesTheBitsOfReadSampleBySample) {
   const WaveTables tables = stereo_surface();
   constexpr std::size_t kSize = 500;
   const std::vector<Phase> increments(kSize, knotwave::base::phase_increment(777.7, kRate));
@@ -213,6 +230,17 @@ TEST(TableOscillator, GivesTheBitsOfReadSampleBySample) {
     const Phase at = phase + phase_from_cycles(double(offsets[i]));
     ASSERT_EQ(left[i], tables.read(level, blend, 0, at)) << "sample " << i;
     ASSERT_EQ(right[i], tables.read(level, blend, 1, at)) << "sample " << i;
+    phase = phase + increments[i];
+  }
+}
+
+TEST_P(EverySimdLevel, GivesTheBitsOfReadForOneRow) {
+  const WaveTables tables = builtin("saw");
+  const auto increments = glide(50, 52, 999);
+  const auto out = play(tables, increments);
+  Phase phase;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    ASSERT_EQ(out[i], tables.read(tables.level_for(increments[i]), {}, 0, phase)) << "sample " << i;
     phase = phase + increments[i];
   }
 }

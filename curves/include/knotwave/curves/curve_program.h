@@ -106,6 +106,8 @@ class CurveProgram {
 enum class SimdLevel { best, baseline };
 /// [control], before any audio runs.
 void set_simd_level(SimdLevel level);
+/// What was set; other modules' kernels follow it. [any]
+SimdLevel simd_level() KNOTWAVE_RT;
 /// The name of what is in use, such as AVX2 or SSE2. [control]
 const char* simd_level_name();
 

@@ -125,14 +125,14 @@ class WaveTables {
         ~std::uint64_t(0) >> 1;  ///< largest increment that keeps it below Nyquist
     std::size_t offset = 0;      ///< of row 0, channel 0 in tables_
   };
-  /// Weights over a stretch of positions: polynomials in (position - start) * inverse_width.
+  /// Weights over a stretch of positions: polynomials in
+  /// (position - start) * inverse_width.
   struct BlendPiece {
-    double start = 0;
     double inverse_width = 1;
     int first = 0;
     int count = 1;
     int degree = 0;
-    double power[kMaxBlended][kMaxBlended] = {{1}};  ///< [row][power]
+    double power[kMaxBlended][kMaxBlended] = {{1}};  ///< [power][row]
   };
   static constexpr std::size_t table_stride(int size_log2) KNOTWAVE_RT {
     return (std::size_t(1) << size_log2) + 8;
@@ -142,7 +142,8 @@ class WaveTables {
   int rows_ = 1;
   double fit_error_ = 0;
   std::vector<Level> levels_;
-  std::vector<BlendPiece> blends_;  ///< in order of start
+  std::vector<BlendPiece> blends_;
+  std::vector<double> blend_starts_;  ///< of each, increasing
   std::vector<float> tables_;
   std::vector<std::vector<std::complex<double>>> coefficients_;  ///< [row * channels + channel]
 };

@@ -218,6 +218,8 @@ void Envelope::render_chunk(const EnvelopeProgram& program, std::int64_t first,
     std::fill(out.begin(), out.end(), curve.at_u(last_place));
   } else if (last_place == last_u) {  // neither loop nor sustain in this chunk
     curve.render(run, out, cursor_);
+  } else if (place(program, run.at(0)) == last_place && !program.has_loop()) {  // all held
+    std::fill(out.begin(), out.end(), curve.at_u(last_place));
   } else {
     std::array<double, kChunk> u;
     for (std::size_t i = 0; i < n; ++i) u[i] = place(program, run.at(static_cast<std::int64_t>(i)));

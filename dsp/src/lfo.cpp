@@ -72,10 +72,11 @@ Lfo::Position Lfo::at_beats(const LfoSpec& spec, std::int64_t sample, double bea
   return sum(begin, from_cycles((beats - origin_beats_) / spec.beats));
 }
 
-// Position at `sample`; afterwards the step to the next one adds what it is longer than a plain
-// one.
-Lfo::Position Lfo::in_time(const LfoSpec& spec, std::int64_t sample, double factor) KNOTWAVE_RT {
-  const Position position = sum(at_sample(sample), extra_);
+// Position at `sample`, where `plain` is that without a rate factor; afterwards the step to the next
+// one adds what it is longer than a plain one.
+Lfo::Position Lfo::in_time(const LfoSpec& spec, std::int64_t sample, double factor,
+                           Position plain) KNOTWAVE_RT {
+  const Position position = sum(plain, extra_);
   if (factor != 1 && sample >= base::first_sample(phase_start_)) {
     const base::Phase bent = base::phase_increment(spec.rate_hz * factor, sample_rate_hz_);
     extra_ = sum(extra_, difference({0, bent.value}, {0, increment_}));
@@ -116,16 +117,19 @@ void Lfo::render(const LfoSpec& spec, const curves::CurveProgram& cycle, std::in
                  std::span<double> out) KNOTWAVE_RT {
   const double u_min = cycle.u_min(), width = cycle.u_max() - cycle.u_min();
   const bool is_synced = spec.beats > 0 && !tempo_beats.empty();
+  const std::int64_t running = base::first_sample(phase_start_);
   const bool is_once = spec.mode == LfoSpec::Mode::one_shot;
   std::array<double, kChunk> u, from, step;
   for (std::size_t done = 0; done < out.size(); done += kChunk) {
     const auto part = out.subspan(done, std::min(kChunk, out.size() - done));
     const std::int64_t here = first + static_cast<std::int64_t>(done);
+    Position plain = at_sample(here);
     for (std::size_t i = 0; i < part.size(); ++i) {
       const std::int64_t sample = here + static_cast<std::int64_t>(i);
       const double factor = rate_factor.empty() ? 1.0 : rate_factor[done + i];
       const Position position = is_synced ? in_song(spec, sample, factor, tempo_beats[done + i])
-                                          : in_time(spec, sample, factor);
+                                          : in_time(spec, sample, factor, plain);
+      plain = sample >= running ? sum(plain, {0, increment_}) : at_sample(sample + 1);
       const bool is_over = is_once && position.cycle != 0;
       u[i] = is_over ? cycle.u_max() : u_min + base::Phase{position.phase}.cycles() * width;
       if (spec.random) {

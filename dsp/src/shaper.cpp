@@ -13,6 +13,20 @@ constexpr double kMaxError = 3e-8;  // of the polynomial form: -150 dB
 
 std::size_t at_index(int i) { return static_cast<std::size_t>(i); }
 
+// With a = t(x0), b = t(x1) the mean of t^k over [a, b] is h_k(a, b) / (k + 1), where
+// h_k = a^k + a^(k-1) b + ... + b^k = a h_(k-1) + b^k. The blossom of the antiderivative, in short.
+template <int Degree>
+double mean_of(const double* terms, double a, double b) {
+  double power = 1, h = 1;
+  double sum = terms[0];
+  for (int k = 1; k <= Degree; ++k) {
+    power *= b;
+    h = a * h + power;
+    sum += terms[k] * h;
+  }
+  return sum;
+}
+
 double conditioned(double x) {
   if (x != x) return 0;
   return base::snap_to_zero(std::clamp(x, -kLargestInput, kLargestInput));
@@ -74,21 +88,30 @@ ShaperProgram::Input ShaperProgram::locate(double x, int hint) const KNOTWAVE_RT
   return {x, static_cast<int>(after - breaks_.begin()) - 1};
 }
 
-// With a = t(x0), b = t(x1) the mean of t^k over [a, b] is h_k(a, b) / (k + 1), where
-// h_k = a^k + a^(k-1) b + ... + b^k = a h_(k-1) + b^k. The blossom of the antiderivative, in short.
 double ShaperProgram::piece_mean(int piece, double x0, double x1) const KNOTWAVE_RT {
   const double start = breaks_[at_index(piece)];
   const double a = (x0 - start) * inverse_widths_[at_index(piece)];
   const double b = (x1 - start) * inverse_widths_[at_index(piece)];
   const double* terms = terms_.data() + at_index(piece) * at_index(degree_ + 1);
-  double power = 1, h = 1;
-  double sum = terms[0];
-  for (int k = 1; k <= degree_; ++k) {
-    power *= b;
-    h = a * h + power;
-    sum += terms[k] * h;
+  static_assert(curves::kMaxPieceDegree == 7);
+  switch (degree_) {
+    case 0:
+      return terms[0];
+    case 1:
+      return mean_of<1>(terms, a, b);
+    case 2:
+      return mean_of<2>(terms, a, b);
+    case 3:
+      return mean_of<3>(terms, a, b);
+    case 4:
+      return mean_of<4>(terms, a, b);
+    case 5:
+      return mean_of<5>(terms, a, b);
+    case 6:
+      return mean_of<6>(terms, a, b);
+    default:
+      return mean_of<7>(terms, a, b);
   }
-  return sum;
 }
 
 double ShaperProgram::mean(Input a, Input b) const KNOTWAVE_RT {

@@ -20,8 +20,8 @@ class StateVariableFilter {
   /// Q = 0.5 * 100^r). NaN counts as the low limit. Band has unit gain at its peak. in [n]: NaN
   /// counts as 0, beyond +-1e6 it is clamped; in and out may be the same. The response is that of
   /// the analogue filter with s = (z - 1) / ((z + 1) tan(pi cutoff / rate)). [audio] Coefficients
-  /// are only worked out at samples where cutoff or resonance differ from the sample before, which
-  /// does not change a bit.
+  /// are worked out where cutoff or resonance move, for every sample; while both stand still they
+  /// are kept, which does not change a bit.
   void render(FilterKind kind, double rate_hz, std::span<const float> cutoff_hz,
               std::span<const float> resonance, std::span<const float> in,
               std::span<float> out) KNOTWAVE_RT;
@@ -31,7 +31,8 @@ class StateVariableFilter {
   struct Coefficients {
     double k = 2, a1 = 1, a2 = 0, a3 = 0;
   };
-  static Coefficients coefficients(double cutoff_hz, double resonance, double rate_hz) KNOTWAVE_RT;
+  template <FilterKind kind>
+  float tick(const Coefficients& c, float in) KNOTWAVE_RT;
   template <FilterKind kind>
   void run(double rate_hz, std::span<const float> cutoff_hz, std::span<const float> resonance,
            std::span<const float> in, std::span<float> out) KNOTWAVE_RT;

@@ -55,7 +55,8 @@ class Lfo {
 
   Position at_sample(std::int64_t sample) const KNOTWAVE_RT;
   Position at_beats(const LfoSpec& spec, std::int64_t sample, double beats) KNOTWAVE_RT;
-  Position in_time(const LfoSpec& spec, std::int64_t sample, double factor) KNOTWAVE_RT;
+  Position in_time(const LfoSpec& spec, std::int64_t sample, double factor,
+                   Position plain) KNOTWAVE_RT;
   Position in_song(const LfoSpec& spec, std::int64_t sample, double factor,
                    double beats) KNOTWAVE_RT;
   double depth(const LfoSpec& spec, std::int64_t sample) const KNOTWAVE_RT;

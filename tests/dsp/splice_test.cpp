@@ -154,4 +154,18 @@ TEST(Splice, ShorterAttacksAreNoWorseThanFromRest) {
   }
 }
 
+TEST(Splice, StraightLinesAreNoWorseThanFromRest) {
+  for (const double attack_s : {0.002, 0.01, 0.05}) {
+    const double decay = attack_s + 0.1, end = decay + 0.3;
+    EnvelopeSpec spec;
+    spec.seconds = end;
+    spec.sustain_u = decay;
+    const NurbsCurve curve = curve_of({0, 1, 0.6, 0}, 1, {0, 0, attack_s, decay, end, end});
+    const Worst worst =
+        worst_of(EnvelopeProgram::create(curve, spec).value(), knotwave::support::test_count(60));
+    report(attack_s, worst);
+    EXPECT_LT(worst.retrigger_db, worst.rest_db + 1) << attack_s;
+  }
+}
+
 }  // namespace

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "document_depth.h"
+#include "document_guard.h"
 
 #define TOML_EXCEPTIONS 0
 #define TOML_HEADER_ONLY 1
@@ -15,8 +15,8 @@
 #define TOML_INT_CHARCONV 1
 #define TOML_MAX_NESTED_VALUES 32
 #define TOML_ENABLE_FORMATTERS 0
-// toml++ 3.3.0 claims that some faults cannot be, such as "[.a]": it aborts on them, and with NDEBUG
-// even builds on the claim (undefined behaviour). Without its claims it reports them.
+// toml++ 3.3.0 claims that some faults cannot be, such as "[.a]": it aborts on them, and with
+// NDEBUG even builds on the claim (undefined behaviour). Without its claims it reports them.
 #undef NDEBUG
 #define TOML_ASSERT(claim) static_assert(true)
 #if defined(__GNUC__)
@@ -135,8 +135,8 @@ Result<Node> parse_checked(std::string_view text) {
                                                " bytes; at most " +
                                                std::to_string(kMaxDocumentBytes) + " are read");
   }
-  if (const DeepPlace deep = find_too_deep(text); deep.line > 0) {
-    return error_at(ErrorCode::syntax, too_deep_message(), {deep.line, deep.column});
+  if (GuardFault fault = find_guard_fault(text); fault.line > 0) {
+    return error_at(ErrorCode::syntax, std::move(fault.message), {fault.line, fault.column});
   }
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 // One pass over the characters of a TOML text.
-#include "document_depth.h"
+#include "document_guard.h"
 
 #include "knotwave/base/document.h"
 
 namespace knotwave::base {
 namespace {
 
-class DepthScanner {
+class GuardScanner {
  public:
-  explicit DepthScanner(std::string_view text) : text_(text) {}
+  explicit GuardScanner(std::string_view text) : text_(text) {}
 
-  DeepPlace run() {
-    while (at_ < text_.size()) {
+  GuardFault run() {
+    if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+    while (at_ < text_.size() && fault_.line == 0) {
       const char c = text_[at_];
       if (c == '"' || c == '\'') {
         skip_string(c);
@@ -20,14 +21,21 @@ class DepthScanner {
         while (at_ < text_.size() && text_[at_] != '\n') step();
       } else {
         count(c);
-        if (brackets_ > kMaxDocumentDepth || dots_ > kMaxDocumentDepth) return {line_, column_};
+        if (brackets_ > kMaxDocumentDepth || dots_ > kMaxDocumentDepth) keep(too_deep_message());
+        if (!is_ascii(c)) keep("only ASCII letters may stand outside of quotes and comments");
         step();
       }
     }
-    return {};
+    return fault_;
   }
 
  private:
+  static bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
+
+  void keep(std::string message) {
+    if (fault_.line == 0) fault_ = {line_, column_, std::move(message)};
+  }
+
   void count(char c) {
     if (c == '[' || c == '{') ++brackets_;
     if ((c == ']' || c == '}') && brackets_ > 0) --brackets_;
@@ -43,6 +51,7 @@ class DepthScanner {
       const char c = text_[at_];
       if (c == '\\' && quote == '"') {
         step(2);
+        if (is_long) check_after_backslash();
       } else if (!is_long && (c == quote || c == '\n')) {
         step();
         return;
@@ -53,6 +62,17 @@ class DepthScanner {
       } else {
         step();
       }
+    }
+  }
+
+  /// toml++ looks for white space after a backslash, and after the line breaks that one swallows.
+  void check_after_backslash() {
+    if (!is_ascii(text_[at_ - 1])) keep("a backslash may not stand before this letter");
+    const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+    if (!is_blank(text_[at_ - 1])) return;
+    while (at_ < text_.size() && is_blank(text_[at_])) step();
+    if (at_ < text_.size() && !is_ascii(text_[at_])) {
+      keep("after a backslash at a line's end the text must go on with an ASCII letter");
     }
   }
 
@@ -75,11 +95,12 @@ class DepthScanner {
   int column_ = 1;
   int brackets_ = 0;
   int dots_ = 0;
+  GuardFault fault_;
 };
 
 }  // namespace
 
-DeepPlace find_too_deep(std::string_view text) { return DepthScanner(text).run(); }
+GuardFault find_guard_fault(std::string_view text) { return GuardScanner(text).run(); }
 
 std::string too_deep_message() {
   return "nested deeper than " + std::to_string(kMaxDocumentDepth) + " levels";

@@ -112,22 +112,13 @@ class CurvePicture {
 
   Range range_of(int coordinate) const {
     if (coordinate < 0) return {curve_.u_min(), curve_.u_max()};
-    Range range{spans_[0].values[index_of(coordinate)], spans_[0].values[index_of(coordinate)]};
-    for (const SpanSamples& span : spans_) {
-      for (std::size_t k = 0; k < span.u.size(); ++k) {
-        range.include(span.values[k * index_of(curve_.dim()) + index_of(coordinate)]);
-      }
-    }
+    Range range = curves::range_of(spans_, curve_.dim(), coordinate);
     if (options_.control_polygon) {
       const HullRange hull = hull_range(curve_, coordinate);
       range.include(hull.low);
       range.include(hull.high);
     }
-    if (!(range.size() > 1e-9 * std::abs(range.high))) {
-      const double room = std::max(0.5, 0.1 * std::abs(range.high));
-      range = {range.low - room, range.high + room};
-    }
-    return range;
+    return widened(range);
   }
 
   void draw_polygon(Trace trace) {

@@ -83,6 +83,21 @@ std::vector<SpanSamples> sample_spans(const NurbsCurve& curve, int steps) {
   return spans;
 }
 
+Range range_of(const std::vector<SpanSamples>& spans, int dim, int coordinate) {
+  const auto step = static_cast<std::size_t>(dim), c = static_cast<std::size_t>(coordinate);
+  Range range{spans[0].values[c], spans[0].values[c]};
+  for (const SpanSamples& span : spans) {
+    for (std::size_t i = c; i < span.values.size(); i += step) range.include(span.values[i]);
+  }
+  return range;
+}
+
+Range widened(Range range) {
+  if (range.size() > 1e-9 * std::abs(range.high)) return range;
+  const double room = std::max(0.5, 0.1 * std::abs(range.high));
+  return {range.low - room, range.high + room};
+}
+
 std::vector<KnotMark> knot_marks(const NurbsCurve& curve) {
   std::vector<KnotMark> marks;
   for (const double knot : curve.knots()) {

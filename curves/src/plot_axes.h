@@ -55,6 +55,10 @@ struct SpanSamples {
 /// Every span of positive length; `steps` is for the whole curve.
 std::vector<SpanSamples> sample_spans(const NurbsCurve& curve, int steps);
 
+/// What a coordinate covers in the samples; widened when it is (nearly) constant.
+Range range_of(const std::vector<SpanSamples>& spans, int dim, int coordinate);
+Range widened(Range range);
+
 /// A knot inside or at the ends of the domain and how often it is there.
 struct KnotMark {
   double u = 0;

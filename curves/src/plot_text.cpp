@@ -95,24 +95,14 @@ std::string plot_text(const NurbsCurve& curve, int columns, int rows) {
   Frame frame;
   frame.right = 2 * inner - 1.0;
   frame.bottom = 4 * high - 1.0;
-  const auto range_of = [&](int c) {
-    Range range{spans[0].values[static_cast<std::size_t>(c)],
-                spans[0].values[static_cast<std::size_t>(c)]};
-    for (const SpanSamples& span : spans) {
-      for (std::size_t k = 0; k < span.u.size(); ++k) {
-        range.include(
-            span.values[k * static_cast<std::size_t>(curve.dim()) + static_cast<std::size_t>(c)]);
-      }
-    }
-    if (!(range.size() > 1e-9 * std::abs(range.high))) range = {range.low - 1, range.high + 1};
-    return range;
-  };
-  frame.x = plane ? range_of(0) : Range{curve.u_min(), curve.u_max()};
-  frame.y = range_of(plane ? 1 : 0);
+  frame.x = plane ? widened(range_of(spans, 2, 0)) : Range{curve.u_min(), curve.u_max()};
+  frame.y = range_of(spans, curve.dim(), plane ? 1 : 0);
   for (int c = 1; c < curve.dim() && !plane; ++c) {
-    frame.y.include(range_of(c).low);
-    frame.y.include(range_of(c).high);
+    const Range more = range_of(spans, curve.dim(), c);
+    frame.y.include(more.low);
+    frame.y.include(more.high);
   }
+  frame.y = widened(frame.y);
   Dots dots(inner, high);
   if (plane) {
     draw_spans(dots, frame, curve, spans, 0, 1);

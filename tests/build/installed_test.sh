@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake --build "$build" --target programs knotwave_engine knotwave_io >"$work/build.log" || { tail -n 30 "$work/build.log"; exit 1; }
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
-expected="0.50 0.25 261.626 Hz"
+expected="0.50 0.25 261.626 Hz, empty.mid"
 
 check() {
   echo "$1: $2"

@@ -20,5 +20,7 @@ int main() {
   knotwave::dsp::Smoother smoother;
   smoother.reset(0.25, 64);
   const knotwave::engine::Tuning tuning;
-  std::printf("%.2f %.2f %.3f Hz\n", middle, smoother.value_at(0), tuning.hz(60));
+  const auto song = knotwave::io::parse_midi({}, "empty.mid");
+  std::printf("%.2f %.2f %.3f Hz, %s\n", middle, smoother.value_at(0), tuning.hz(60),
+              song ? "a song" : song.error().source.c_str());
 }

@@ -146,8 +146,8 @@ constexpr double tanh(double x) KNOTWAVE_RT {
                                (x == x ? sign : std::uint64_t{0}));
 }
 
-/// Frequency of a MIDI note, 440 * 2^((note - 69) / 12). [any] Any double: notes outside
-/// -12000..12000 are clamped to it, NaN gives 440. Error <= 2 ulp; exact at A of every octave.
+/// Frequency of a MIDI note, 440 * 2^((note - 69) / 12). [any] Any double, clamped to +-12000; NaN
+/// gives 440. Error <= 2 ulp for notes -256..256; exact at A of every octave.
 constexpr double note_to_hz(double note) KNOTWAVE_RT {
   const double from_a4 = detail::clamp_or(note, -12000.0, 12000.0, 69.0) - 69.0;
   const double rounded = from_a4 * (1.0 / 12.0) + detail::kRoundToInteger;

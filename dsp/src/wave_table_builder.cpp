@@ -7,6 +7,7 @@
 #include <string>
 
 #include "knotwave/base/elementary.h"
+#include "knotwave/base/fp_state.h"
 #include "knotwave/dsp/fft.h"
 
 namespace knotwave::dsp {
@@ -151,7 +152,8 @@ void WaveTableBuilder::fill_level(int level) {
     float* out = tables_.tables_.data() + plan.offset + row * stride;
     const auto mask = static_cast<std::size_t>(size - 1);
     for (std::size_t k = 0; k < stride; ++k) {  // entry 0 is two before the cycle's start
-      out[k] = static_cast<float>(cycle[(k + mask - 1) & mask]);
+      const double value = cycle[(k + mask - 1) & mask];
+      out[k] = static_cast<float>(base::snap_to_zero(value));
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "knotwave/base/elementary.h"
+#include "knotwave/base/time.h"
 #include "knotwave/curves/curve_file.h"
 #include "knotwave/dsp/oscillator.h"
 #include "knotwave/io/sound_file.h"

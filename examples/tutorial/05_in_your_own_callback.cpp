@@ -10,6 +10,7 @@
 #include <portaudio.h>
 
 #include "knotwave/base/elementary.h"
+#include "knotwave/base/time.h"
 #include "knotwave/curves/compile.h"
 #include "knotwave/curves/curve_file.h"
 

@@ -56,7 +56,7 @@ wave = ")" +
 [envelopes.amp]
 curve = "on"
 seconds = 0.01
-sustain = 0.01
+sustain_at = 0.01
 )";
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Patches, events and renders that the tests of the engine share.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -168,6 +170,23 @@ inline std::string with(std::string_view patch, std::string_view lines) {
   text.insert(text.find("name ="), std::string(lines) + "\n");
   return text;
 }
+
+/// Frequency of a sine from its upward zero crossings, interpolated; 0 when there are none.
+inline double frequency_hz(const std::vector<float>& x, std::size_t from, std::size_t to,
+                           double rate_hz = 48000) {
+  double first = -1, last = -1;
+  int count = 0;
+  for (std::size_t i = from; i + 1 < to; ++i) {
+    if (!(x[i] < 0 && x[i + 1] >= 0)) continue;
+    const double a = static_cast<double>(x[i]), b = static_cast<double>(x[i + 1]);
+    last = static_cast<double>(i) - a / (b - a);
+    if (first < 0) first = last;
+    ++count;
+  }
+  return count < 2 ? 0 : (count - 1) * rate_hz / (last - first);
+}
+
+inline double dbfs(double x) { return 20 * std::log10(std::max(x, 1e-30)); }
 
 inline std::unique_ptr<const BankProgram> bank_from(std::string_view patch_text) {
   auto patch = parse_patch(patch_text, "scene.toml");

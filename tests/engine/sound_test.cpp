@@ -18,23 +18,6 @@ namespace {
 
 using namespace scenes;  // NOLINT: the words of these tests
 
-double dbfs(double x) { return 20 * std::log10(std::max(x, 1e-30)); }
-
-/// Frequency of a sine from its upward zero crossings, interpolated.
-double frequency_hz(const std::vector<float>& x, std::size_t from, std::size_t to,
-                    double rate_hz = 48000) {
-  double first = -1, last = -1;
-  int count = 0;
-  for (std::size_t i = from; i + 1 < to; ++i) {
-    if (!(x[i] < 0 && x[i + 1] >= 0)) continue;
-    const double a = x[i], b = x[i + 1];
-    last = static_cast<double>(i) - a / (b - a);
-    if (first < 0) first = last;
-    ++count;
-  }
-  return count < 2 ? 0 : (count - 1) * rate_hz / (last - first);
-}
-
 /// Level of what a Hann window of 1024 samples around `at` holds between 5 and 20 kHz, in dBFS.
 double splice_dbfs(const std::vector<float>& x, std::size_t at) {
   constexpr std::size_t kSize = 1024;

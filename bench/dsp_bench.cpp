@@ -34,7 +34,7 @@ void per_sample(benchmark::State& state, const std::vector<double>& out, Block&&
     benchmark::ClobberMemory();
   }
   state.counters["ns/sample"] =
-      benchmark::Counter(static_cast<double>(state.iterations() * kBlock) * 1e-9,
+      benchmark::Counter(static_cast<double>(state.iterations()) * kBlock * 1e-9,
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
@@ -254,10 +254,12 @@ BENCHMARK_CAPTURE(smoother, eight_moves_at_once, 8);
 
 void smoother_one_pole(benchmark::State& state) {
   std::vector<double> out(kBlock);
-  double y = 0, target = 1;
-  benchmark::DoNotOptimize(target);
-  per_sample(state, out, [&](std::int64_t) {
+  double state_y = 0;
+  per_sample(state, out, [&](std::int64_t first) {
+    const double target = static_cast<double>(first % 7);
+    double y = state_y;
     for (double& sample : out) sample = y += 0.001 * (target - y);
+    state_y = y;
   });
 }
 BENCHMARK(smoother_one_pole);

@@ -117,4 +117,68 @@ TEST(EqualPower, BlocksOfAnySizeGiveTheBitsOfOneAtATime) {
   }
 }
 
+using knotwave::curves::CurveSpec;
+using knotwave::curves::NurbsCurve;
+using knotwave::dsp::CrossfadeLaw;
+
+NurbsCurve curve_of(int dim, int degree, std::vector<double> points, std::vector<double> knots,
+                    std::vector<double> weights = {}) {
+  CurveSpec spec;
+  spec.dim = dim;
+  spec.degree = degree;
+  spec.points = std::move(points);
+  spec.knots = std::move(knots);
+  spec.weights = std::move(weights);
+  return NurbsCurve::create(std::move(spec)).value();
+}
+
+TEST(CrossfadeLaw, OneCoordinateIsTheGainOfBAndMirroredThatOfA) {
+  const auto law = CrossfadeLaw::create(curve_of(1, 2, {0, 0.2, 1}, {4, 4, 4, 8, 8, 8})).value();
+  const auto gain = [](double p) { return 0.4 * p * (1 - p) + p * p; };
+  for (const double p : {0.0, 0.25, 0.5, 0.9, 1.0}) {
+    EXPECT_NEAR(law.at(p).b, gain(p), 1e-7);
+    EXPECT_NEAR(law.at(p).a, gain(1 - p), 1e-7);
+  }
+  EXPECT_EQ(law.at(-3).b, 0);
+  EXPECT_EQ(law.at(3).b, 1);
+  EXPECT_EQ(law.at(std::numeric_limits<double>::quiet_NaN()).b, 0);
+}
+
+TEST(CrossfadeLaw, TwoCoordinatesAreTheGains) {
+  const double w = std::sqrt(0.5);
+  const auto law =
+      CrossfadeLaw::create(curve_of(2, 2, {1, 0, 1, 1, 0, 1}, {0, 0, 0, 1, 1, 1}, {1, w, 1}))
+          .value();
+  for (int i = 0; i <= 100; ++i) {
+    const GainPair gains = law.at(i / 100.0);
+    EXPECT_NEAR(gains.a * gains.a + gains.b * gains.b, 1, 2e-7);
+  }
+  EXPECT_EQ(law.at(0).a, 1);
+  EXPECT_EQ(law.at(1).b, 1);
+}
+
+TEST(CrossfadeLaw, BlocksGiveTheBitsOfOneAtATime) {
+  std::vector<double> position;
+  for (int i = -10; i <= 110; ++i) position.push_back(i / 100.0);
+  std::vector<float> a(position.size()), b(position.size());
+  for (const CrossfadeLaw& law :
+       {CrossfadeLaw(), CrossfadeLaw::linear(),
+        CrossfadeLaw::create(curve_of(1, 2, {0, 0.2, 1}, {0, 0, 0, 1, 1, 1})).value()}) {
+    EXPECT_EQ(knotwave::support::allocations_in([&] { law.render(position, a, b); }), 0);
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      EXPECT_EQ(a[i], law.at(position[i]).a);
+      EXPECT_EQ(b[i], law.at(position[i]).b);
+    }
+  }
+}
+
+TEST(CrossfadeLaw, RefusesThreeCoordinates) {
+  const auto law = CrossfadeLaw::create(curve_of(3, 1, {0, 0, 0, 1, 1, 1}, {0, 0, 1, 1}));
+  ASSERT_FALSE(law.has_value());
+  EXPECT_EQ(
+      law.error().message,
+      "a crossfade law has 1 coordinate (the gain of b) or 2 (the gains of a and b), this curve "
+      "has 3");
+}
+
 }  // namespace

@@ -503,6 +503,31 @@ TEST(Envelope, ABlockWithControlsMayBeSplitAnywhere) {
   });
 }
 
+TEST(Envelope, HandleCurvesAreReadByTheirTime) {
+  CurveSpec spec;
+  spec.name = "handles";
+  spec.dim = 2;
+  spec.points = {0, 0, 0.1, 1, 0.3, 1, 1, 0.5, 1.5, 0.2, 1.7, 0, 2, 0};
+  spec.knots = {0, 0, 0, 0, 0.5, 0.5, 0.5, 1, 1, 1, 1};
+  const NurbsCurve curve = NurbsCurve::create(spec).value();
+  const EnvelopeProgram program =
+      program_of(curve, {.compile = {}, .seconds = 0.1, .sustain_u = 1});
+  EXPECT_NEAR(program.u_per_second(), 10, 1e-12);
+  Envelope envelope;
+  envelope.gate_on(program, {0, 0}, kHighRate, 1);
+  for (const double u : {0.1, 0.2, 0.35, 0.45}) {
+    double xy[2];
+    curve.evaluate(u, xy);
+    const auto sample = static_cast<std::int64_t>(std::lround(xy[0] * 480000));
+    EXPECT_NEAR(sample_at(envelope, program, sample), xy[1], 1e-5);
+  }
+  const std::int64_t again = 300000;
+  rendered(envelope, program, 0, static_cast<std::size_t>(again) - 3);
+  expect_c1(across(envelope, program, again, [&](Envelope& e) {
+    e.gate_on(program, {again, 0}, kHighRate, 1);
+  }));
+}
+
 TEST(Envelope, DoesNotAllocate) {
   const EnvelopeProgram program =
       program_of(bell(), {.compile = {}, .seconds = 0.1, .sustain_u = 0.625});

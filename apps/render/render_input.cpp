@@ -17,6 +17,16 @@ std::string warning_text(const std::string& file, const io::SongWarning& warning
   return file + ": byte " + std::to_string(warning.offset) + ": warning: " + warning.message;
 }
 
+/// The engine knows cycles by their file, so a file is cut in one way only.
+Error two_frames(const engine::PatchSpec& patch, const engine::WaveCycles& known, int frame) {
+  Error error = fail(ErrorCode::value_out_of_range,
+                     "'" + known.file + "' is cut into cycles of " + std::to_string(known.frame) +
+                         " frames elsewhere, and of " + std::to_string(frame) +
+                         " here (wave_frame): use a copy of the file");
+  error.source = patch.source_name;
+  return error;
+}
+
 /// The cycles of every sound file the patches name, each read once.
 Result<std::vector<engine::WaveCycles>> read_waves(const engine::BankSpec& spec,
                                                    std::vector<std::string>& warnings) {
@@ -24,10 +34,15 @@ Result<std::vector<engine::WaveCycles>> read_waves(const engine::BankSpec& spec,
   for (const engine::PatchSpec& patch : spec.patches) {
     for (const engine::OscillatorSpec& oscillator : patch.oscillators) {
       const std::string& file = oscillator.wave_file;
-      const bool is_read = std::any_of(waves.begin(), waves.end(),
-                                       [&](const auto& wave) { return wave.file == file; });
-      if (file.empty() || is_read) continue;
-      auto cycles = io::read_cycles(file, oscillator.wave_frame);
+      const int frame = oscillator.wave_frame;
+      if (file.empty()) continue;
+      const auto known = std::find_if(waves.begin(), waves.end(),
+                                      [&](const auto& wave) { return wave.file == file; });
+      if (known != waves.end()) {
+        if (frame > 0 && frame != known->frame) return two_frames(patch, *known, frame);
+        continue;
+      }
+      auto cycles = io::read_cycles(file, frame);
       if (!cycles) return std::move(cycles).error();
       for (const auto& warning : cycles->warnings) warnings.push_back(warning_text(file, warning));
       waves.push_back({file, cycles->frame, cycles->rows, std::move(cycles->samples)});

@@ -156,6 +156,25 @@ TEST_F(RenderProgram, ClippingIsCountedAndTold) {
   EXPECT_THAT(run({"loud.toml", "small.mid", "-o", "out.wav", "--bits", "32f"}).err, IsEmpty());
 }
 
+TEST_F(RenderProgram, SampledCyclesArePlayedAndAFileIsCutInOneWayOnly) {
+  io::SoundWriteConfig config{.path = file("cycle.wav"), .channels = 1};
+  auto writer = io::SoundWriter::create(config);
+  std::vector<float> cycle(512, 0.5f);
+  std::fill(cycle.begin() + 256, cycle.end(), -0.5f);
+  ASSERT_TRUE(writer->write(cycle).has_value());
+  ASSERT_TRUE(writer->finish().has_value());
+  std::string patch = kSmallPatch;
+  patch.replace(patch.find("wave = \"sine\""), 13, "wave_file = \"cycle.wav\"");
+  write("square.toml", patch);
+  const auto done = run({"square.toml", "small.mid", "-o", "out.wav"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_NE(hash_in(done.out), hash_in(render({"-o", "out.wav"}).out));
+  write("twice.toml", patch + "[oscillators.b]\nwave_file = \"cycle.wav\"\nwave_frame = 256\n");
+  const auto twice = run({"twice.toml", "small.mid", "-o", "out.wav"});
+  EXPECT_EQ(twice.exit_code, 1);
+  EXPECT_THAT(twice.err, HasSubstr("cycles of 512 frames elsewhere, and of 256 here"));
+}
+
 TEST_F(RenderProgram, DemosNeedNoOtherFile) {
   const auto done = run({"--demo", "first-light", "-o", "out.wav"});
   EXPECT_EQ(done.exit_code, 0) << done.err;

@@ -72,8 +72,8 @@ Lfo::Position Lfo::at_beats(const LfoSpec& spec, std::int64_t sample, double bea
   return sum(begin, from_cycles((beats - origin_beats_) / spec.beats));
 }
 
-// Position at `sample`, where `plain` is that without a rate factor; afterwards the step to the next
-// one adds what it is longer than a plain one.
+// Position at `sample`, where `plain` is that without a rate factor; afterwards the step to the
+// next one adds what it is longer than a plain one.
 Lfo::Position Lfo::in_time(const LfoSpec& spec, std::int64_t sample, double factor,
                            Position plain) KNOTWAVE_RT {
   const Position position = sum(plain, extra_);

@@ -16,6 +16,8 @@ class GuardScanner {
     while (at_ < text_.size() && fault_.line == 0) {
       const char c = text_[at_];
       if (c == '"' || c == '\'') {
+        // To toml++ a quote within a word is part of the word, and so is what follows.
+        if (!may_begin_string()) keep("a quote may not stand within a word");
         skip_string(c);
       } else if (c == '#') {
         while (at_ < text_.size() && text_[at_] != '\n') step();
@@ -31,6 +33,11 @@ class GuardScanner {
 
  private:
   static bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
+
+  bool may_begin_string() const {
+    return at_ == 0 ||
+           std::string_view(" \t\r\n=[,{.\xBF").find(text_[at_ - 1]) != std::string_view::npos;
+  }
 
   void keep(std::string message) {
     if (fault_.line == 0) fault_ = {line_, column_, std::move(message)};

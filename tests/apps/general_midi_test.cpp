@@ -30,7 +30,7 @@ struct Measure {
   std::size_t frames = 0;
   bool finite = true;
   double peak = 0;
-  double end_peak = 0;  ///< of the last 10 ms
+  double end_peak = 0;  ///< of the last millisecond
   double loudness_lufs = -HUGE_VAL;
   double cpu_s = 0;
 };
@@ -67,7 +67,7 @@ class Meter {
   ebur128_state* state_;
   std::vector<char> pending_;
   std::vector<float> samples_;
-  float tail_[2 * kRateHz / 100] = {};
+  float tail_[2 * kRateHz / 1000] = {};
   std::size_t tail_at_ = 0;
 };
 
@@ -92,6 +92,13 @@ bool sounds_a_note(const std::string& path) {
     if ((e.bytes[0] & 0xF0) == 0x90 && e.bytes[2] > 0 && e.sysex_size == 0) return true;
   }
   return false;
+}
+
+double song_seconds(const std::string& path) {
+  const auto song = knotwave::io::read_midi_file(path);
+  if (!song) return 0;
+  knotwave::io::TickClock clock(*song, kRateHz);
+  return static_cast<double>(clock.at(song->length_ticks).sample) / kRateHz;
 }
 
 /// Renders each file, checks it, and prints a line of totals.
@@ -138,8 +145,13 @@ TEST(GeneralMidi, OwnScoresAreUnclippedAndSensiblyLoud) {
 TEST(GeneralMidi, ASampleOfTheCorpusIsUnclippedAndSensiblyLoud) {
   const auto all = knotwave::support::corpus_files("midi", {".mid"});
   if (all.empty()) GTEST_SKIP() << "KNOTWAVE_CORPUS is not set: no file of the corpus was run";
+  std::vector<std::string> shorter;  // the longer ones wait for the stress run
+  for (const auto& path : all) {
+    if (song_seconds(path) <= 90) shorter.push_back(path);
+  }
+  ASSERT_GE(shorter.size(), 30u);
   std::vector<std::string> songs;
-  for (std::size_t i = 0; i < 30; ++i) songs.push_back(all[i * all.size() / 30]);
+  for (std::size_t i = 0; i < 30; ++i) songs.push_back(shorter[i * shorter.size() / 30]);
   check_songs(songs);
 }
 

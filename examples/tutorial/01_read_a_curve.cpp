@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // You learn: how a curve file becomes a curve, and how to ask it for values and slopes.
-// Run:       build/release/bin/01_read_a_curve examples/curves/decay60.toml
+// Run:       build/release/bin/01_read_a_curve examples/curves/decay.toml
 // It prints: the curve's degree and domain, then nine rows of u, value, level in dB and slope.
 // Next:      02_hear_it_as_an_envelope.cpp
 #include <cstdio>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // You learn: how the same kind of file becomes a waveform, free of aliases at any pitch.
-// Run:       build/release/bin/03_hear_it_as_a_wave examples/curves/drawn_wave.toml out/wave.wav
+// Run:       build/release/bin/03_hear_it_as_a_wave examples/curves/waves.toml out/wave.wav
 // It plays:  a glide of four seconds from 55 Hz up six octaves, and not one wrong tone on the way.
 // Next:      04_write_a_patch.cpp
 #include <cstdio>

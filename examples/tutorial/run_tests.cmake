@@ -1,0 +1,11 @@
+# Each tutorial program is run as its first lines say, and its last words are checked.
+set(curves ${PROJECT_SOURCE_DIR}/examples/curves)
+add_test(NAME tutorial.01 COMMAND 01_read_a_curve ${curves}/decay.toml)
+set_tests_properties(tutorial.01 PROPERTIES PASS_REGULAR_EXPRESSION "1\\.0000 +0\\.001000 +-60\\.00")
+add_test(NAME tutorial.02 COMMAND 02_hear_it_as_an_envelope ${curves}/decay.toml tutorial_02.wav)
+set_tests_properties(tutorial.02 PROPERTIES PASS_REGULAR_EXPRESSION "tutorial_02.wav: 2 s of 440 Hz")
+add_test(NAME tutorial.03 COMMAND 03_hear_it_as_a_wave ${curves}/waves.toml tutorial_03.wav)
+set_tests_properties(tutorial.03 PROPERTIES PASS_REGULAR_EXPRESSION "tutorial_03.wav: 55 Hz to 3520 Hz")
+add_test(NAME tutorial.04 COMMAND 04_write_a_patch tutorial_04.wav)
+set_tests_properties(tutorial.04 PROPERTIES PASS_REGULAR_EXPRESSION "tutorial_04.wav: 3 notes")
+set_tests_properties(tutorial.01 tutorial.02 tutorial.03 tutorial.04 PROPERTIES LABELS apps TIMEOUT 60)

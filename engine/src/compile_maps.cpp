@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Maps of a patch: what they read, which numbers of curves they move, where they add.
 #include <algorithm>
+#include <array>
 
 #include "knotwave/base/suggest.h"
 
@@ -25,7 +26,7 @@ Result<void> check_index(const char* what, int index, std::size_t count) {
                                                  std::to_string(count));
 }
 
-std::string map_name(std::size_t number) { return "map " + std::to_string(number + 1); }
+std::string map_name(int number) { return "map " + std::to_string(number + 1); }
 
 }  // namespace
 
@@ -43,14 +44,15 @@ Result<void> PatchCompiler::collect_moved_numbers() {
     moved.range.coordinate = map.target == MapTarget::curve_weight ? 0 : map.target_coordinate;
     moved.range.low = map.low;
     moved.range.high = map.high;
-    if (auto found = curve(moved.curve, map_name(i)); !found) return found.error();
+    if (auto found = curve(moved.curve, map_name(static_cast<int>(i))); !found)
+      return found.error();
     for (const MovedNumber& other : moved_) {
       if (other.curve != moved.curve || other.range.kind != moved.range.kind ||
           other.range.point != moved.range.point ||
           other.range.coordinate != moved.range.coordinate)
         continue;
       return fail(ErrorCode::control_conflict,
-                  map_name(static_cast<std::size_t>(other.map)) + " and " + map_name(i) +
+                  map_name(other.map) + " and " + map_name(static_cast<int>(i)) +
                       " move the same number of curve '" + moved.curve + "' (point " +
                       std::to_string(moved.range.point) + ")");
     }
@@ -70,9 +72,44 @@ std::vector<int> PatchCompiler::moved_numbers_of(const std::string& curve_name) 
 Result<void> PatchCompiler::compile_maps() {
   for (std::size_t i = 0; i < spec_.maps.size(); ++i) {
     if (!spec_.maps[i].enabled) continue;
-    if (auto done = compile_map(spec_.maps[i], i); !done) return in_role(done.error(), map_name(i));
+    if (auto done = compile_map(spec_.maps[i], i); !done)
+      return in_role(done.error(), map_name(static_cast<int>(i)));
   }
+  drop_overridden_maps();
   return {};
+}
+
+bool PatchCompiler::is_rational(const MapSpec& map) const {
+  if (!map.surface.empty()) return spec_.curves.find_surface(map.surface)->is_rational();
+  if (map.curve.empty()) return false;
+  const std::vector<int> moved = moved_numbers_of(map.curve);
+  return spec_.curves.find_curve(map.curve)->is_rational() ||
+         std::any_of(moved.begin(), moved.end(), [&](int number) {
+           const auto kind = moved_[static_cast<std::size_t>(number)].range.kind;
+           return kind == curves::ControlRange::Kind::weight;
+         });
+}
+
+// A rational map overrides the plain ones onto its target. They are not compiled in, so that they
+// cost nothing, like those that are off.
+void PatchCompiler::drop_overridden_maps() {
+  std::array<int, kSlotCount> rational_map;
+  rational_map.fill(-1);
+  for (std::size_t i = 0; i < program_->maps_.size(); ++i) {
+    int& first = rational_map[static_cast<std::size_t>(program_->maps_[i].slot)];
+    if (first < 0 && map_origins_[i].is_rational) first = map_origins_[i].number;
+  }
+  std::vector<PatchProgram::MapPart> kept;
+  for (std::size_t i = 0; i < program_->maps_.size(); ++i) {
+    const int by = rational_map[static_cast<std::size_t>(program_->maps_[i].slot)];
+    if (by < 0 || map_origins_[i].is_rational) {
+      kept.push_back(std::move(program_->maps_[i]));
+      continue;
+    }
+    tell(map_name(map_origins_[i].number) + " is overridden: " + map_name(by) +
+         " moves the same target by a rational curve or surface");
+  }
+  program_->maps_ = std::move(kept);
 }
 
 Result<void> PatchCompiler::check_source(MapSource source, int index) const {
@@ -175,6 +212,7 @@ Result<void> PatchCompiler::compile_map(const MapSpec& map, std::size_t number) 
     if (auto done = add_surface(map, part); !done) return done;
   }
   program_->maps_.push_back(std::move(part));
+  map_origins_.push_back({static_cast<int>(number), is_rational(map)});
   return {};
 }
 

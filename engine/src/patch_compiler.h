@@ -23,6 +23,11 @@ class PatchCompiler {
     curves::ControlRange range;
     int map = 0;
   };
+  /// Where a compiled map comes from.
+  struct MapOrigin {
+    int number = 0;  ///< in spec_.maps
+    bool is_rational = false;
+  };
 
   Result<void> check_counts();
   Result<void> collect_moved_numbers();
@@ -40,6 +45,9 @@ class PatchCompiler {
   Result<void> check_target(const MapSpec& map) const;
   Result<void> check_map(const MapSpec& map) const;
   Result<void> compile_map(const MapSpec& map, std::size_t number);
+  /// Its curve or surface has weights that differ, or a map moves one of them.
+  bool is_rational(const MapSpec& map) const;
+  void drop_overridden_maps();
   Result<void> compile_rest();
   Result<void> add_curve(const MapSpec& map, PatchProgram::MapPart& part) const;
   Result<void> add_surface(const MapSpec& map, PatchProgram::MapPart& part) const;
@@ -61,6 +69,7 @@ class PatchCompiler {
   std::span<const WaveCycles> cycles_;
   std::unique_ptr<PatchProgram> program_;
   std::vector<MovedNumber> moved_;
+  std::vector<MapOrigin> map_origins_;  ///< of program_->maps_ until the overridden ones are out
   std::map<std::string, std::shared_ptr<const dsp::WaveTables>> waves_;
 };
 

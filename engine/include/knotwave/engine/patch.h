@@ -92,7 +92,8 @@ enum class MapTarget {
 };
 
 /// Map1: value = depth * curve(source), or depth * source without a curve. Map2: surface(source,
-/// source_v). All maps onto one target add; a disabled one costs nothing.
+/// source_v). All maps onto one target add; but where one of them is rational (weights that differ,
+/// or one that a map moves), only the rational ones do. Disabled and overridden maps cost nothing.
 struct MapSpec {
   MapSource source = MapSource::constant;
   int source_index = 0;  ///< control number, envelope, lfo

@@ -91,6 +91,7 @@ class PatchProgram {
   std::span<const EnvelopePart> envelopes() const KNOTWAVE_RT { return envelopes_; }
   int amp_envelope() const KNOTWAVE_RT { return amp_envelope_; }
   std::span<const LfoPart> lfos() const KNOTWAVE_RT { return lfos_; }
+  /// Those that are on and not overridden.
   std::span<const MapPart> maps() const KNOTWAVE_RT { return maps_; }
   std::span<const Step> schedule() const KNOTWAVE_RT { return schedule_; }
   const dsp::ShaperProgram* shaper() const KNOTWAVE_RT { return shaper_ ? &*shaper_ : nullptr; }

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// Maps onto one target: plain ones add up, a rational one takes their place.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "knotwave/engine/patch_program.h"
+
+#include "scenes.h"
+
+namespace knotwave::engine {
+namespace {
+
+using namespace scenes;  // NOLINT: the words of these tests
+
+constexpr std::string_view kCurves = R"(
+[curves.straight]
+degree = 1
+points = [0, 1]
+[curves.weighted]
+degree = 2
+points = [0, 0.4, 1]
+weights = [1, 3, 1]
+[curves.evenly]
+degree = 2
+points = [0, 0.4, 1]
+weights = [3, 3, 3]
+[curves.moved]
+degree = 2
+points = [0, 0.4, 1]
+[surfaces.weighted_row]
+degree_u = 1
+degree_v = 1
+points = [[0, 1], [0, 1]]
+weights = [[1, 2], [1, 3]]
+)";
+
+std::string map_of(std::string_view from, std::string_view curve, std::string_view to, int depth,
+                   std::string_view more = "") {
+  return "[[maps]]\nfrom = " + std::string(from) + "\n" + std::string(curve) + "\nto = '" +
+         std::string(to) + "'\ndepth = " + std::to_string(depth) + "\n" + std::string(more) + "\n";
+}
+const std::string kPlainMap = map_of("'velocity'", "", "pitch", 5);
+const std::string kWeightedMap = map_of("'velocity'", "curve = 'weighted'", "pitch", 12);
+
+std::string patch_with(const std::string& maps) {
+  return std::string(kPlain) + std::string(kCurves) + maps;
+}
+
+Sound sound_of(const std::string& maps, std::size_t block = 256) {
+  const auto bank = bank_from(patch_with(maps));
+  return play(*engine_for(*bank), {on(0, 0, 57, 127)}, 24000, block);
+}
+double pitch_of(const Sound& sound) { return frequency_hz(sound.left, 4000, 24000); }
+
+std::unique_ptr<const PatchProgram> program_of(const std::string& maps) {
+  auto patch = parse_patch(patch_with(maps), "scene.toml");
+  EXPECT_TRUE(patch) << (patch ? "" : patch.error().to_string());
+  auto program = PatchProgram::create(*patch);
+  EXPECT_TRUE(program) << (program ? "" : program.error().to_string());
+  return *std::move(program);
+}
+
+TEST(MapOverride, ARationalMapTakesThePlaceOfPlainOnesOntoTheSameTarget) {
+  const Sound alone = sound_of(kWeightedMap);
+  EXPECT_NEAR(pitch_of(alone), 440, 0.01);
+  EXPECT_TRUE(sound_of(kPlainMap + kWeightedMap) == alone);
+  EXPECT_TRUE(sound_of(kWeightedMap + kPlainMap + kPlainMap) == alone);
+}
+
+TEST(MapOverride, PlainMapsAddUpAndSoDoRationalOnes) {
+  const std::string octave = map_of("'constant'", "curve = 'straight'", "pitch", 7);
+  EXPECT_NEAR(pitch_of(sound_of(kPlainMap + octave)), 440, 0.01);
+  EXPECT_NEAR(pitch_of(sound_of(kWeightedMap + kWeightedMap + kPlainMap)), 880, 0.02);
+}
+
+TEST(MapOverride, OtherTargetsKeepTheirPlainMaps) {
+  const std::string of_oscillator = map_of("'constant'", "", "a.pitch", 12);
+  EXPECT_NEAR(pitch_of(sound_of(of_oscillator + kWeightedMap)), 880, 0.02);
+}
+
+TEST(MapOverride, ARationalMapThatIsOffOverridesNothing) {
+  const std::string off_map =
+      map_of("'velocity'", "curve = 'weighted'", "pitch", 12, "enabled = false");
+  EXPECT_TRUE(sound_of(kPlainMap + off_map) == sound_of(kPlainMap));
+}
+
+TEST(MapOverride, WeightsThatAreAllTheSameMakeNoRationalMap) {
+  const std::string even = map_of("'velocity'", "curve = 'evenly'", "pitch", 7);
+  EXPECT_NEAR(pitch_of(sound_of(kPlainMap + even)), 440, 0.01);
+}
+
+TEST(MapOverride, AMovedWeightOrAWeightedSurfaceMakesARationalMap) {
+  const std::string through_moved = map_of("'velocity'", "curve = 'moved'", "pitch", 12);
+  const std::string mover =
+      "[[maps]]\nfrom = 'mod'\nto = 'curve.moved.weight.1'\nlow = 0.5\nhigh = 4\n";
+  EXPECT_NEAR(pitch_of(sound_of(kPlainMap + through_moved)), 440 * std::exp2(5.0 / 12), 0.02);
+  EXPECT_NEAR(pitch_of(sound_of(kPlainMap + through_moved + mover)), 440, 0.01);
+  const std::string surface =
+      map_of("['velocity', 'key']", "surface = 'weighted_row'", "pitch", 12);
+  EXPECT_NEAR(pitch_of(sound_of(kPlainMap + surface)), 440, 0.01);
+}
+
+TEST(MapOverride, OverriddenMapsAreNotCompiledInAndTheReportSaysSo) {
+  const auto program = program_of(kPlainMap + kWeightedMap + kPlainMap);
+  EXPECT_EQ(program->maps().size(), 1u);
+  EXPECT_EQ(program->schedule().size(), program_of(kWeightedMap)->schedule().size());
+  EXPECT_THAT(program->report(),
+              testing::Contains("map 3 is overridden: map 2 moves the same target by a rational "
+                                "curve or surface"));
+}
+
+TEST(MapOverride, AnOverriddenMapFromVelocityLeavesTheBuiltInLawOn) {
+  const std::string plain = map_of("'velocity'", "", "amp", 20);
+  const std::string weighted = map_of("'mod'", "curve = 'weighted'", "amp", 20);
+  EXPECT_FALSE(program_of(plain)->uses_velocity_law());
+  EXPECT_TRUE(program_of(plain + weighted)->uses_velocity_law());
+}
+
+TEST(MapOverride, TheLengthOfABlockIsNotHeard) {
+  const std::string maps = map_of("'mod'", "curve = 'weighted'", "pitch", 12) + kPlainMap;
+  const auto bank = bank_from(patch_with(maps));
+  const std::vector<Event> events = {on(0, 0, 57), control(1001, 0, 1, 127)};
+  const Sound whole = play(*engine_for(*bank), events, 3000, 3000);
+  for (const std::size_t block : {1u, 7u, 64u, 257u}) {
+    EXPECT_TRUE(play(*engine_for(*bank), events, 3000, block) == whole) << block;
+  }
+}
+
+}  // namespace
+}  // namespace knotwave::engine

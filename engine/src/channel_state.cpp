@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sources: MIDI 1.0 Detailed Specification 4.2.1; MMA RP-015 (reset all controllers), RP-018 (data
-// increment and decrement); General MIDI Level 2 (volume law, pan).
+// increment and decrement); General MIDI Level 2 (volume law, pan). MIDI 1.0 gives portamento time
+// no unit; the cubic is ours.
 #include "knotwave/engine/channel_state.h"
 
 #include <algorithm>
@@ -12,6 +13,7 @@ constexpr int kRpnBendRange = 0;
 constexpr int kRpnFineTuning = 1;
 constexpr int kRpnCoarseTuning = 2;
 constexpr int kRpnMpe = 6;
+constexpr double kLongestPortamento = 5;  // seconds
 
 }  // namespace
 
@@ -30,6 +32,9 @@ void ChannelState::reset() KNOTWAVE_RT {
   coarse_tuning_ = 64;
   mpe_members_ = 0;
   timbre_sent_ = false;
+  has_portamento_time_ = false;
+  note_mode_ = NoteMode::as_patch;
+  mono_channels_ = 1;
   reset_controllers();
 }
 
@@ -41,6 +46,8 @@ void ChannelState::reset_controllers() KNOTWAVE_RT {
   }
   coarse_[kExpression] = 127;
   for (int pedal = kSustain; pedal <= 69; ++pedal) store(pedal, 0);
+  portamento_ = Portamento::as_patch;
+  portamento_source_ = -1;
   poly_pressure_.fill(0);
   channel_pressure_ = 0;
   bend_ = 8192;
@@ -81,11 +88,23 @@ ChannelState::Effect ChannelState::control_change(int controller, int value) KNO
     case kAllNotesOff:
     case kOmniOff:
     case kOmniOn:
+      return Effect::all_notes_off;
     case kMonoOn:
     case kPolyOn:
-      return Effect::all_notes_off;
+      note_mode_ = controller == kMonoOn ? NoteMode::mono : NoteMode::poly;
+      mono_channels_ = controller == kMonoOn ? value : 1;
+      return Effect::note_mode;
     case kTimbre:
       timbre_sent_ = true;
+      break;
+    case kPortamentoTime:
+      has_portamento_time_ = true;
+      break;
+    case kPortamento:
+      portamento_ = value >= 64 ? Portamento::on : Portamento::off;
+      break;
+    case kPortamentoControl:
+      portamento_source_ = value;
       break;
     default:
       break;
@@ -93,6 +112,7 @@ ChannelState::Effect ChannelState::control_change(int controller, int value) KNO
   if (controller >= 32 && controller < 64) {
     fine_[static_cast<std::size_t>(controller - 32)] = static_cast<std::uint8_t>(value);
     has_fine_[static_cast<std::size_t>(controller - 32)] = true;
+    if (controller - 32 == kPortamentoTime) has_portamento_time_ = true;
     return Effect::none;
   }
   store(controller, value);
@@ -166,6 +186,18 @@ double ChannelState::control(int controller) const KNOTWAVE_RT {
   if (index < 32 && has_fine_[index]) return (coarse_[index] * 128 + fine_[index]) / 16383.0;
   if (index >= 32 && index < 64) return fine_[index - 32] / 127.0;
   return coarse_[index] / 127.0;
+}
+
+double ChannelState::portamento_seconds(double fallback) const KNOTWAVE_RT {
+  if (!has_portamento_time_) return fallback;
+  const double place = control(kPortamentoTime);
+  return kLongestPortamento * place * place * place;
+}
+
+int ChannelState::take_portamento_source() KNOTWAVE_RT {
+  const int source = portamento_source_;
+  portamento_source_ = -1;
+  return source;
 }
 
 double ChannelState::bend() const KNOTWAVE_RT {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Messages. Notes are in performance_notes.cpp.
+// Messages. Notes are in performance_notes.cpp, portamento and note modes in performance_modes.cpp.
 #include "performance.h"
 
 #include <algorithm>
@@ -25,6 +25,7 @@ void Performance::reset(const BankProgram* bank) KNOTWAVE_RT {
   sustain_was_on_.fill(false);
   sostenuto_was_on_.fill(false);
   last_pitch_.fill({});
+  mono_spans_.fill(0);
   tempo_.reset(config_.rate_hz);
   master_gain_ = 1;
   next_note_ = 0;
@@ -109,6 +110,9 @@ void Performance::handle_control(int channel, int controller, int value,
         if (speaks_for(channel, other)) lift_keys(other, time);
       }
       break;
+    case ChannelState::Effect::note_mode:
+      set_note_mode(channel, time);
+      break;
     case ChannelState::Effect::mpe_zone:
       configure_mpe(channel, state.mpe_members(), time);
       break;
@@ -157,6 +161,7 @@ void Performance::reset_system(base::SampleTime time) KNOTWAVE_RT {
   sustain_was_on_.fill(false);
   sostenuto_was_on_.fill(false);
   last_pitch_.fill({});
+  mono_spans_.fill(0);
   master_gain_ = 1;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "knotwave/engine/bank_program.h"
@@ -50,12 +51,15 @@ class Performance {
     NoteStack stack;
     int slot = -1;
     const PatchProgram* patch = nullptr;
+    PlayMode mode = PlayMode::mono;  ///< mono or legato, as its last key was played
+    bool is_drum = false;
   };
 
   // performance.cpp: messages
   void handle_midi(const base::MidiEvent& midi, base::SampleTime time) KNOTWAVE_RT;
   void handle_system(const base::MidiEvent& midi, base::SampleTime time) KNOTWAVE_RT;
   void handle_control(int channel, int controller, int value, base::SampleTime time) KNOTWAVE_RT;
+  void set_note_mode(int channel, base::SampleTime time) KNOTWAVE_RT;
   void configure_mpe(int channel, int members, base::SampleTime time) KNOTWAVE_RT;
   void reset_system(base::SampleTime time) KNOTWAVE_RT;
   void update_pedals(int channel, base::SampleTime time) KNOTWAVE_RT;
@@ -71,21 +75,32 @@ class Performance {
   // performance_notes.cpp: notes
   void note_on(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT;
   void note_off(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT;
-  void play_poly(int channel, int key, int velocity, const BankProgram::Choice& choice,
+  void play_poly(int channel, int key, int velocity, const BankProgram::Choice& choice, int source,
                  base::SampleTime time) KNOTWAVE_RT;
-  void play_mono(int channel, int key, int velocity, const BankProgram::Choice& choice,
+  void play_mono(int channel, int key, int velocity, const BankProgram::Choice& choice, int source,
                  base::SampleTime time) KNOTWAVE_RT;
   /// The mono voice goes to the key that now has priority, or is released.
   void settle_mono(int channel, base::SampleTime time, int release_velocity) KNOTWAVE_RT;
   bool mono_sounds(const Mono& mono, int channel) const KNOTWAVE_RT;
   int begin(int channel, const NoteContext& note, const BankProgram::Choice& choice,
-            base::SampleTime time, bool glides) KNOTWAVE_RT;
+            base::SampleTime time, const Portamento& portamento) KNOTWAVE_RT;
   NoteContext context(int channel, int key, int velocity, const BankProgram::Choice& choice,
                       std::uint32_t number) const KNOTWAVE_RT;
   void release(int index, base::SampleTime time, int velocity) KNOTWAVE_RT;
   void fade(int index, base::SampleTime time, double seconds) KNOTWAVE_RT;
   void install(const BankProgram* bank, base::SampleTime time) KNOTWAVE_RT;
   void carry_over(int index, const BankProgram* bank, base::SampleTime time) KNOTWAVE_RT;
+
+  // performance_modes.cpp: portamento, mono and poly
+  PlayMode play_mode(int channel, const BankProgram::Choice& choice) const KNOTWAVE_RT;
+  /// `glides`: whether the patch's own glide is meant here.
+  Portamento portamento(int channel, const PatchProgram& patch, bool is_drum,
+                        bool glides) const KNOTWAVE_RT;
+  /// From the key a CC 84 named, or as above while source < 0.
+  Portamento portamento(int channel, const BankProgram::Choice& choice, int key, int source,
+                        bool glides) const KNOTWAVE_RT;
+  bool tie_to_source(int channel, int key, int velocity, const BankProgram::Choice& choice,
+                     int source, base::SampleTime time) KNOTWAVE_RT;
 
   const EngineConfig config_;
   const BankProgram* bank_ = nullptr;
@@ -98,6 +113,7 @@ class Performance {
     double semitones = 0;
   };
   std::array<LastPitch, kChannels> last_pitch_{};
+  std::array<int, kChannels> mono_spans_{};  ///< channels that a CC 126 on each made mono
   TempoClock tempo_;
   double master_gain_ = 1;
   std::uint64_t next_note_ = 0;

@@ -6,6 +6,7 @@ namespace knotwave::engine {
 
 void Performance::note_on(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT {
   const int master = zones_.master_of(channel);
+  const int source = channels_[static_cast<std::size_t>(channel)].take_portamento_source();
   const ChannelState& programs = channels_[static_cast<std::size_t>(master)];
   const BankProgram::Choice choice =
       bank_->choose(master, programs.bank_msb(), programs.bank_lsb(), programs.program(), key);
@@ -13,7 +14,7 @@ void Performance::note_on(int channel, int key, int velocity, base::SampleTime t
   channels_[static_cast<std::size_t>(channel)].forget_poly_pressure(key);
   ++counters_.notes;
   Mono& mono = monos_[static_cast<std::size_t>(channel)];
-  const bool is_mono = choice.patch->spec().mode != PlayMode::poly;
+  const bool is_mono = play_mode(channel, choice) != PlayMode::poly;
   if (mono.patch != nullptr && mono.patch != choice.patch) {  // the program changed under held keys
     mono.stack.clear();
     settle_mono(channel, time, 64);
@@ -21,9 +22,9 @@ void Performance::note_on(int channel, int key, int velocity, base::SampleTime t
     mono.patch = nullptr;
   }
   if (is_mono) {
-    play_mono(channel, key, velocity, choice, time);
+    play_mono(channel, key, velocity, choice, source, time);
   } else {
-    play_poly(channel, key, velocity, choice, time);
+    play_poly(channel, key, velocity, choice, source, time);
   }
 }
 
@@ -69,7 +70,7 @@ NoteContext Performance::context(int channel, int key, int velocity,
 }
 
 int Performance::begin(int channel, const NoteContext& note, const BankProgram::Choice& choice,
-                       base::SampleTime time, bool glides) KNOTWAVE_RT {
+                       base::SampleTime time, const Portamento& portamento) KNOTWAVE_RT {
   const int index = slots_.free_place();
   if (index < 0) {
     ++counters_.notes_dropped;
@@ -103,9 +104,9 @@ int Performance::begin(int channel, const NoteContext& note, const BankProgram::
   start.time = time;
   start.gain_lin = choice.gain_lin * bank_->gain_lin();
   start.rate_hz = config_.rate_hz;
+  start.portamento = portamento;
   LastPitch& last = last_pitch_[static_cast<std::size_t>(channel)];
-  start.glides = glides && last.known && choice.patch->spec().glide_s > 0;
-  start.glide_from = last.semitones;
+  if (!portamento.from && last.known) start.portamento.from = last.semitones;
   voice(index).start(start, tempo_);
   last = {true, voice(index).pitch_target()};
   counters_.voices_peak = std::max(counters_.voices_peak, slots_.sounding_count());
@@ -113,7 +114,8 @@ int Performance::begin(int channel, const NoteContext& note, const BankProgram::
 }
 
 void Performance::play_poly(int channel, int key, int velocity, const BankProgram::Choice& choice,
-                            base::SampleTime time) KNOTWAVE_RT {
+                            int source, base::SampleTime time) KNOTWAVE_RT {
+  if (tie_to_source(channel, key, velocity, choice, source, time)) return;
   const bool is_member = zones_.is_member(channel);
   for (int i = 0; i < static_cast<int>(slots_.all().size()); ++i) {
     const VoiceSlot& slot = slots_.at(i);
@@ -127,7 +129,8 @@ void Performance::play_poly(int channel, int key, int velocity, const BankProgra
     }
   }
   const auto number = static_cast<std::uint32_t>(next_note_);
-  begin(channel, context(channel, key, velocity, choice, number), choice, time, true);
+  begin(channel, context(channel, key, velocity, choice, number), choice, time,
+        portamento(channel, choice, key, source, true));
   ++next_note_;
 }
 
@@ -138,28 +141,32 @@ bool Performance::mono_sounds(const Mono& mono, int channel) const KNOTWAVE_RT {
 }
 
 void Performance::play_mono(int channel, int key, int velocity, const BankProgram::Choice& choice,
-                            base::SampleTime time) KNOTWAVE_RT {
+                            int source, base::SampleTime time) KNOTWAVE_RT {
   Mono& mono = monos_[static_cast<std::size_t>(channel)];
-  const PatchSpec& spec = choice.patch->spec();
   mono.patch = choice.patch;
+  mono.mode = play_mode(channel, choice);
+  mono.is_drum = choice.drum;
   mono.stack.press(key, velocity);
-  const NoteStack::Entry* chosen = mono.stack.choose(spec.priority);
+  const NoteStack::Entry* chosen = mono.stack.choose(choice.patch->spec().priority);
   const bool sounds = mono_sounds(mono, channel);
   if (sounds && chosen->key != key) return;  // an older key has priority
   const auto number = static_cast<std::uint32_t>(next_note_++);
   const NoteContext note = context(channel, key, velocity, choice, number);
   if (!sounds) {
-    mono.slot = begin(channel, note, choice, time, spec.mode == PlayMode::mono);
+    mono.slot = begin(channel, note, choice, time,
+                      portamento(channel, choice, key, source, mono.mode == PlayMode::mono));
     if (mono.slot >= 0) slots_.at(mono.slot).is_mono = true;
     return;
   }
   VoiceSlot& slot = slots_.at(mono.slot);
   const bool tied = slot.gate_is_open();
-  const bool joins = spec.mode == PlayMode::mono || !tied;
-  const bool glides = spec.glide_s > 0 && (spec.mode == PlayMode::mono || tied);
+  const bool is_source = tied && slot.key == source;  // then it goes on from where it sounds
+  const bool joins = !is_source && (mono.mode == PlayMode::mono || !tied);
+  const Portamento path =
+      portamento(channel, choice, key, source, !joins || mono.mode == PlayMode::mono);
   slot.key = key;
   slot.key_down = true;
-  voice(mono.slot).play(note, time, joins, glides, tempo_);
+  voice(mono.slot).play(note, time, joins, is_source ? Portamento{path.seconds, {}} : path, tempo_);
   last_pitch_[static_cast<std::size_t>(channel)] = {true, voice(mono.slot).pitch_target()};
 }
 
@@ -176,13 +183,13 @@ void Performance::settle_mono(int channel, base::SampleTime time,
   }
   slot.key_down = true;
   if (chosen->key == slot.key) return;
-  const PatchSpec& spec = mono.patch->spec();
   NoteContext note = voice(mono.slot).begun().note;
   note.note += chosen->key - slot.key;
   note.key = chosen->key;
   note.velocity = chosen->velocity;
   slot.key = chosen->key;
-  voice(mono.slot).play(note, time, spec.mode == PlayMode::mono, spec.glide_s > 0, tempo_);
+  voice(mono.slot).play(note, time, mono.mode == PlayMode::mono,
+                        portamento(channel, *mono.patch, mono.is_drum, true), tempo_);
   last_pitch_[static_cast<std::size_t>(channel)] = {true, voice(mono.slot).pitch_target()};
 }
 
@@ -218,18 +225,19 @@ void Performance::carry_over(int index, const BankProgram* bank,
   start.gain_lin = choice.gain_lin * bank->gain_lin();
   start.note.note = choice.note;
   start.note.random.seed = choice.patch->spec().seed ^ config_.seed;
-  start.glides = false;
+  start.portamento = {};
   VoiceSlot& slot = slots_.at(fresh);
   slot = old;
   slot.patch = choice.patch;
   slot.bank = bank;
   slot.choke_group = choice.choke_group;
-  slot.is_mono = was_mono && choice.patch->spec().mode != PlayMode::poly;
+  slot.is_mono = was_mono && play_mode(old.channel, choice) != PlayMode::poly;
   voice(fresh).start(start, tempo_);
   voice(fresh).fade_in(base::first_sample(time), kInstallFadeSeconds);
   if (slot.is_mono) {
     mono.slot = fresh;
     mono.patch = choice.patch;
+    mono.mode = play_mode(old.channel, choice);
   } else if (was_mono) {
     const NoteStack::Entry* held = mono.stack.choose(mono.patch->spec().priority);
     slot.key_down = held != nullptr && held->key_down;

@@ -50,10 +50,8 @@ void Voice::start(const Start& start, const TempoClock& tempo) KNOTWAVE_RT {
     static_gain_ *= base::db_to_gain(kSoftPedalDb);
   }
   const double pitch = key_pitch_of_note();
-  glide_.reset(start.glides ? start.glide_from : pitch);
-  if (start.glides) {
-    glide_.start(patch_->glide_curve(), pitch, start.time, patch_->spec().glide_s, start.rate_hz);
-  }
+  glide_.reset(start.portamento.from.value_or(pitch));
+  glide_.start(patch_->glide_curve(), pitch, start.time, start.portamento.seconds, start.rate_hz);
   bend_.reset(bend_semitones(start.note, patch_->spec().bend_semitones),
               samples_of(kBendGlideSeconds, start.rate_hz));
   velocity_gain_.reset(velocity_gain(), samples_of(kVelocityGlideSeconds, start.rate_hz));
@@ -76,16 +74,17 @@ void Voice::start(const Start& start, const TempoClock& tempo) KNOTWAVE_RT {
   filter_right_.reset();
 }
 
-void Voice::play(const NoteContext& note, base::SampleTime time, bool joins, bool glides,
-                 const TempoClock& tempo) KNOTWAVE_RT {
+void Voice::play(const NoteContext& note, base::SampleTime time, bool joins,
+                 const Portamento& portamento, const TempoClock& tempo) KNOTWAVE_RT {
   const std::int64_t sample = base::first_sample(time);
   const int velocity = joins ? note.velocity : start_.note.velocity;
   const base::RandomStream random = start_.note.random;
   start_.note = note;
   start_.note.velocity = velocity;
   start_.note.random = random;
-  glide_.start(patch_->glide_curve(), key_pitch_of_note(), time,
-               glides ? patch_->spec().glide_s : 0, start_.rate_hz);
+  if (portamento.from) glide_.reset(*portamento.from);
+  glide_.start(patch_->glide_curve(), key_pitch_of_note(), time, portamento.seconds,
+               start_.rate_hz);
   detached_ = false;
   if (!joins) return;
   velocity_gain_.set_target(velocity_gain(), sample);

@@ -2,6 +2,7 @@
 // One sounding note: sources, crossfade, shaper, filter, loudness, pan. docs/engine.md draws it.
 #pragma once
 #include <array>
+#include <optional>
 #include <span>
 
 #include "knotwave/base/time.h"
@@ -38,6 +39,12 @@ struct VoiceScratch {
   std::array<base::Phase, kChunk> increments;
 };
 
+/// How a voice comes to the pitch of a new note.
+struct Portamento {
+  double seconds = 0;          ///< 0: it is there at once
+  std::optional<double> from;  ///< a note number of 12-TET; none: from where it sounds
+};
+
 class Voice {
  public:
   struct Start {
@@ -46,16 +53,15 @@ class Voice {
     base::SampleTime time;
     double gain_lin = 1;  ///< of the bank and its entry
     double rate_hz = 48000;
-    bool glides = false;  ///< from the pitch glide_from, as a note number
-    double glide_from = 0;
+    Portamento portamento;
   };
 
   /// Begins a note. [audio] Its first sample is first_sample(time), or a later one: envelopes, LFOs
   /// and glide are functions of time and go on from there, oscillators begin there.
   void start(const Start& start, const TempoClock& tempo) KNOTWAVE_RT;
   /// Another note on the same voice; `joins`: envelopes retrigger from where they are. [audio]
-  void play(const NoteContext& note, base::SampleTime time, bool joins, bool glides,
-            const TempoClock& tempo) KNOTWAVE_RT;
+  void play(const NoteContext& note, base::SampleTime time, bool joins,
+            const Portamento& portamento, const TempoClock& tempo) KNOTWAVE_RT;
   /// Closes the gate. [audio]
   void release(base::SampleTime time, int velocity) KNOTWAVE_RT;
   /// Silent `seconds` after `sample`, whatever the envelopes do. [audio]

@@ -174,15 +174,64 @@ TEST(ChannelState, ResetAllControllersKeepsVolumePanBankProgramAndTuning) {
 TEST(ChannelState, ChannelModeMessagesAskForWhatTheySay) {
   ChannelState channel;
   EXPECT_EQ(channel.control_change(kAllSoundOff, 0), Effect::all_sound_off);
-  for (const int mode : {123, 124, 125, 126, 127}) {
+  for (const int mode : {123, 124, 125}) {
     EXPECT_EQ(channel.control_change(mode, 0), Effect::all_notes_off) << mode;
   }
+  EXPECT_EQ(channel.note_mode(), ChannelState::NoteMode::as_patch);
+  EXPECT_EQ(channel.control_change(kMonoOn, 4), Effect::note_mode);
+  EXPECT_EQ(channel.note_mode(), ChannelState::NoteMode::mono);
+  EXPECT_EQ(channel.mono_channels(), 4);
+  EXPECT_EQ(channel.control_change(kPolyOn, 0), Effect::note_mode);
+  EXPECT_EQ(channel.note_mode(), ChannelState::NoteMode::poly);
+  EXPECT_EQ(channel.mono_channels(), 1);
   EXPECT_EQ(channel.control_change(kSustain, 127), Effect::pedals);
   EXPECT_EQ(channel.control_change(kSostenuto, 0), Effect::pedals);
   EXPECT_EQ(channel.control_change(1, 3), Effect::none);
   select_rpn(channel, 6);
   EXPECT_EQ(channel.control_change(kDataEntryMsb, 7), Effect::mpe_zone);
   EXPECT_EQ(channel.mpe_members(), 7);
+}
+
+TEST(ChannelState, PortamentoTimeIsFiveSecondsTimesTheCube) {
+  ChannelState channel;
+  EXPECT_EQ(channel.portamento_seconds(0.3), 0.3);
+  channel.control_change(kPortamentoTime, 127);
+  EXPECT_EQ(channel.portamento_seconds(0.3), 5.0);
+  channel.control_change(kPortamentoTime, 0);
+  EXPECT_EQ(channel.portamento_seconds(0.3), 0.0);
+  channel.control_change(kPortamentoTime, 64);
+  EXPECT_NEAR(channel.portamento_seconds(0.3), 0.6399, 1e-4);
+  channel.control_change(kPortamentoTime + 32, 1);  // 14 bits now
+  const double place = (64 * 128 + 1) / 16383.0;
+  EXPECT_NEAR(channel.portamento_seconds(0.3), 5 * place * place * place, 1e-15);
+}
+
+TEST(ChannelState, ResetAllControllersTakesBackPortamentoButNeitherItsTimeNorTheNoteMode) {
+  ChannelState channel;
+  EXPECT_EQ(channel.portamento(), ChannelState::Portamento::as_patch);
+  channel.control_change(kPortamento, 64);
+  EXPECT_EQ(channel.portamento(), ChannelState::Portamento::on);
+  channel.control_change(kPortamento, 63);
+  EXPECT_EQ(channel.portamento(), ChannelState::Portamento::off);
+  channel.control_change(kPortamentoTime, 127);
+  channel.control_change(kPortamentoControl, 60);
+  channel.control_change(kMonoOn, 1);
+  channel.control_change(kResetControllers, 0);
+  EXPECT_EQ(channel.portamento(), ChannelState::Portamento::as_patch);
+  EXPECT_EQ(channel.take_portamento_source(), -1);
+  EXPECT_EQ(channel.portamento_seconds(0), 5.0);
+  EXPECT_EQ(channel.note_mode(), ChannelState::NoteMode::mono);
+  channel.reset();
+  EXPECT_EQ(channel.portamento_seconds(0), 0.0);
+  EXPECT_EQ(channel.note_mode(), ChannelState::NoteMode::as_patch);
+}
+
+TEST(ChannelState, APortamentoSourceIsTakenOnce) {
+  ChannelState channel;
+  EXPECT_EQ(channel.take_portamento_source(), -1);
+  channel.control_change(kPortamentoControl, 0);
+  EXPECT_EQ(channel.take_portamento_source(), 0);
+  EXPECT_EQ(channel.take_portamento_source(), -1);
 }
 
 TEST(ChannelState, BytesAboveSevenBitsAreCut) {

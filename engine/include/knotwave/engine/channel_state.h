@@ -13,6 +13,7 @@ namespace knotwave::engine {
 /// Controller numbers the engine itself gives a meaning to.
 enum Controller : int {
   kBankMsb = 0,
+  kPortamentoTime = 5,
   kDataEntryMsb = 6,
   kVolume = 7,
   kPan = 10,
@@ -20,9 +21,11 @@ enum Controller : int {
   kBankLsb = 32,
   kDataEntryLsb = 38,
   kSustain = 64,
+  kPortamento = 65,
   kSostenuto = 66,
   kSoft = 67,
   kTimbre = 74,
+  kPortamentoControl = 84,
   kDataIncrement = 96,
   kDataDecrement = 97,
   kNrpnLsb = 98,
@@ -47,14 +50,21 @@ class ChannelState {
     pedals,         ///< sustain or sostenuto moved
     all_sound_off,  ///< silence at once
     all_notes_off,  ///< keys up; pedals still hold
+    note_mode,      ///< CC 126 or 127: keys up, then note_mode() for mono_channels()
     mpe_zone,       ///< RPN 6: members() channels
   };
+
+  /// What a message said in place of the patch.
+  enum class Portamento : std::uint8_t { as_patch, off, on };
+  enum class NoteMode : std::uint8_t { as_patch, mono, poly };
 
   ChannelState() KNOTWAVE_RT { reset(); }
   /// Power-on values: volume 100, expression 127, pan and timbre centre, program and bank 0.
   void reset() KNOTWAVE_RT;
-  /// CC 121 as MMA RP-015 has it: modulation, expression, pedals, bend, pressures and the parameter
-  /// selection go back; volume, pan, sound controllers, bank, program and tuning stay.
+  /// CC 121 as MMA RP-015 has it: modulation, expression, pedals (portamento is one, and goes back
+  /// to what the patch says), bend, pressures and the parameter selection go back, and a source
+  /// note of CC 84 is forgotten; volume, pan, sound controllers, portamento time, bank, program,
+  /// tuning and note mode stay.
   void reset_controllers() KNOTWAVE_RT;
 
   Effect control_change(int controller, int value) KNOTWAVE_RT;
@@ -89,6 +99,17 @@ class ChannelState {
   bool sustain() const KNOTWAVE_RT { return coarse_[kSustain] >= 64; }
   bool sostenuto() const KNOTWAVE_RT { return coarse_[kSostenuto] >= 64; }
   bool soft() const KNOTWAVE_RT { return coarse_[kSoft] >= 64; }
+  /// CC 65: from 64 on; as_patch while none was heard.
+  Portamento portamento() const KNOTWAVE_RT { return portamento_; }
+  /// CC 5, 14 bits with CC 37: 5 s times the cube of its 0..1, or `fallback` while none was heard.
+  double portamento_seconds(double fallback) const KNOTWAVE_RT;
+  /// CC 84: the key the next note glides from, or -1; only the first call after it has it.
+  int take_portamento_source() KNOTWAVE_RT;
+  NoteMode note_mode() const KNOTWAVE_RT { return note_mode_; }
+  /// How many channels, from this one up, the last CC 126 or 127 was about; 0 = all that are left.
+  int mono_channels() const KNOTWAVE_RT { return mono_channels_; }
+  /// Used when a CC 126 or 127 on a channel below speaks for this one too. [audio]
+  void set_note_mode(NoteMode mode) KNOTWAVE_RT { note_mode_ = mode; }
   bool timbre_was_sent() const KNOTWAVE_RT { return timbre_sent_; }
   int program() const KNOTWAVE_RT { return program_; }
   /// The bank selected when the program was chosen.
@@ -120,6 +141,11 @@ class ChannelState {
   int coarse_tuning_;  ///< 7 bits, 64 = 0
   int mpe_members_;
   bool timbre_sent_;
+  Portamento portamento_;
+  bool has_portamento_time_;
+  int portamento_source_;  ///< -1: none
+  NoteMode note_mode_;
+  int mono_channels_;
 };
 
 }  // namespace knotwave::engine

@@ -16,6 +16,7 @@ Format, one record a line, numbers as hexadecimal floats:
     knots ...                      jumps, as a curve file has them
     at U SIDE VALUES...            SIDE L or R; value, then derivatives, DIM numbers each
 """
+import itertools
 import math
 import pathlib
 import random
@@ -73,9 +74,8 @@ def exact_derivatives(curve, u, side):
     weights = [Fraction(x) for x in curve["weights"]] or [Fraction(1)] * count
     if curve["periodic"]:
         period = knots[-1] - knots[0]
-        # The knots of the neighbouring periods are doubles like the others: rounded once.
-        before = [Fraction(rounded(k - period)) for k in knots[-1 - degree:-1]]
-        after = [Fraction(rounded(k + period)) for k in knots[1:1 + degree]]
+        before = [k - period for k in knots[-1 - degree:-1]]
+        after = [k + period for k in knots[1:1 + degree]]
         knots = before + knots + after
         points += points[:degree * dim]
         weights += weights[:degree]
@@ -152,6 +152,22 @@ def random_curves():
             yield curve, rng
 
 
+def seam_curves():
+    """Periodic curves whose knots no period shifts to a double, some of them beside the seam."""
+    rng = random.Random(2)
+    for degree in range(1, 16):
+        count = degree + 1 + rng.randrange(5)
+        low = 2 * rng.random() - 1
+        knots = [low] + sorted(low + 3 * rng.random() for _ in range(count - 1)) + [low + 3]
+        if degree % 3 == 1:
+            knots[1] = low + 1e-9
+        if degree % 2 == 0:
+            knots[-2] = knots[-1] - 1e-12
+        yield {"degree": degree, "dim": 1, "periodic": True, "jumps": [], "knots": knots,
+               "points": [2 * rng.random() - 1 for _ in range(count)],
+               "weights": [0.25 + rng.random() for _ in range(count)]}, rng
+
+
 def hexes(numbers):
     return " ".join(float(x).hex() for x in numbers)
 
@@ -162,14 +178,15 @@ def rounded(value):
 
 def text():
     lines = ["# Made by tools/make_curve_references.py; its head explains the format."]
-    for curve, rng in random_curves():
+    for curve, rng in itertools.chain(random_curves(), seam_curves()):
         lines.append(f"curve {curve['degree']} {curve['dim']} {int(curve['periodic'])}")
         for part in ("knots", "points", "weights", "jumps"):
             lines.append(f"{part} {hexes(curve[part])}".rstrip())
         low = curve["knots"][0 if curve["periodic"] else curve["degree"]]
         high = curve["knots"][-1 if curve["periodic"] else -1 - curve["degree"]]
         inner = [k for k in curve["knots"] if low < k < high]
-        places = [(low, "R"), (high, "L"), (rng.random(), "R"), (rng.random(), "R")]
+        places = [(low, "R"), (high, "L"), (low + (high - low) * rng.random(), "R"),
+                  (low + (high - low) * rng.random(), "R")]
         if inner:
             places += [(inner[0], "L"), (inner[0], "R")]
         for u, side in places:

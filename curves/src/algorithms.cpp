@@ -57,8 +57,8 @@ CurveSpec one_period(const HomogeneousCurve& all, int first_true, CurveSpec spec
 // from the first blended one on are right, the p others are their images.
 Result<NurbsCurve> insert_periodic(const NurbsCurve& curve, double u, int times) {
   HomogeneousCurve all(curve);
-  const int span = find_span(all.knots, all.degree, u, Side::right);
-  for (int i = 0; i < times; ++i) all.insert(u);
+  const int span = all.span_at(all.domain.knot(u), Side::right);
+  for (int i = 0; i < times; ++i) all.insert(all.domain.knot(u));
   const int first_true = std::min(span - all.degree + 1, all.degree);
   return NurbsCurve::create(one_period(all, first_true, empty_spec_of(curve)));
 }
@@ -90,7 +90,7 @@ Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times) {
   if (times == 0) return curve;
   if (curve.is_periodic()) return insert_periodic(curve, u, times);
   HomogeneousCurve all(curve);
-  for (int i = 0; i < times; ++i) all.insert(u);
+  for (int i = 0; i < times; ++i) all.insert(all.domain.knot(u));
   CurveSpec spec = empty_spec_of(curve);
   spec.jumps.assign(curve.jumps().begin(), curve.jumps().end());
   all.round_to(spec);
@@ -107,17 +107,18 @@ Result<NurbsCurve> sub_curve(const NurbsCurve& curve, double u_a, double u_b) {
   }
   const int p = curve.degree();
   HomogeneousCurve all(curve);
-  for (const double u : {u_a, u_b}) {
+  const Knot knot_a = all.domain.knot(u_a), knot_b = all.domain.knot(u_b);
+  for (const Knot& u : {knot_a, knot_b}) {
     for (int have = all.multiplicity(u); have < p; ++have) all.insert(u);
   }
   // Spans p..: the first one right of u_a and the last one left of u_b hold the end points.
-  const int first = find_span(all.knots, p, u_a, Side::right);
-  const int last = find_span(all.knots, p, u_b, Side::left);
+  const int first = all.span_at(knot_a, Side::right);
+  const int last = all.span_at(knot_b, Side::left);
   HomogeneousCurve part = all;
   part.points.assign(all.points.begin() + (first - p), all.points.begin() + last + 1);
-  part.knots.assign(index_of(p + 1), u_a);
+  part.knots.assign(index_of(p + 1), knot_a);
   part.knots.insert(part.knots.end(), all.knots.begin() + first + 1, all.knots.begin() + last + 1);
-  part.knots.insert(part.knots.end(), index_of(p + 1), u_b);
+  part.knots.insert(part.knots.end(), index_of(p + 1), knot_b);
   CurveSpec spec = empty_spec_of(curve);
   for (const double jump : curve.jumps()) {
     if (jump > u_a && jump < u_b) spec.jumps.push_back(jump);
@@ -141,7 +142,7 @@ std::vector<BezierSegment> to_bezier(const NurbsCurve& curve) {
   std::vector<BezierSegment> segments;
   std::vector<HomogeneousPoint> points(index_of(p + 1));
   for (int span = p; span < curve.point_count(); ++span) {
-    const double u0 = all.knots[index_of(span)], u1 = all.knots[index_of(span + 1)];
+    const double u0 = curve.knots()[index_of(span)], u1 = curve.knots()[index_of(span + 1)];
     if (!(u0 < u1)) continue;
     bezier_points(all, span, points);
     BezierSegment segment{u0, u1, p, dim, {}, {}};
@@ -166,9 +167,11 @@ void de_casteljau(const BezierSegment& segment, double u, std::span<double> out)
         std::span(segment.points).subspan(index_of(r * segment.dim), index_of(segment.dim)),
         segment.weights[index_of(r)]);
   }
+  const DoubleDouble from_left = DoubleDouble::difference(u, segment.u0);
+  const DoubleDouble to_right = DoubleDouble::difference(segment.u1, u);
   for (int level = 1; level <= p; ++level) {
     for (int r = 0; r <= p - level; ++r) {
-      work[r] = blend(work[r], work[r + 1], segment.u0, segment.u1, u);
+      work[r] = blend(work[r], work[r + 1], from_left, to_right);
     }
   }
   work[0].project(out.first(index_of(segment.dim)));
@@ -176,9 +179,11 @@ void de_casteljau(const BezierSegment& segment, double u, std::span<double> out)
 
 void de_boor(const NurbsCurve& curve, double u, std::span<double> out) noexcept {
   const int p = curve.degree(), dim = curve.dim();
-  u = KnotDomain{curve.u_min(), curve.u_max(), curve.is_periodic()}.place(u, Side::right);
-  const auto knots = curve.knots();
-  const int span = find_span(knots, p, u, Side::right);
+  const KnotSequence knots{curve.knots(), p, curve.is_periodic()};
+  const KnotDomain domain = knots.domain();
+  u = domain.place(u, Side::right);
+  const Knot here = domain.knot(u);
+  const int span = find_span(curve.knots(), p, u, Side::right);
   HomogeneousPoint work[kMaxDegree + 1];
   for (int r = 0; r <= p; ++r) {
     const int i = span - p + r;
@@ -187,8 +192,8 @@ void de_boor(const NurbsCurve& curve, double u, std::span<double> out) noexcept 
   }
   for (int level = 1; level <= p; ++level) {
     for (int r = 0; r <= p - level; ++r) {
-      work[r] = blend(work[r], work[r + 1], knots[index_of(span - p + level + r)],
-                      knots[index_of(span + 1 + r)], u);
+      work[r] = blend(work[r], work[r + 1], domain.distance(knots[span - p + level + r], here),
+                      domain.distance(here, knots[span + 1 + r]));
     }
   }
   work[0].project(out.first(index_of(dim)));

@@ -17,10 +17,10 @@ std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 // Point of `curve` that has exactly `knots` [degree] between its first and last knot, once the
 // missing ones are inserted. No inner knot of `curve` may be a jump.
-HomogeneousPoint point_with_knots(const HomogeneousCurve& curve, std::span<const double> knots) {
+HomogeneousPoint point_with_knots(const HomogeneousCurve& curve, std::span<const Knot> knots) {
   const int p = curve.degree;
-  const int a = find_span(curve.knots, p, knots.front(), Side::right);
-  const int b = find_span(curve.knots, p, knots.back(), Side::left);
+  const int a = curve.span_at(knots.front(), Side::right);
+  const int b = curve.span_at(knots.back(), Side::left);
   const int first = std::min(a, b) - p, last = std::max(a, b);
   HomogeneousCurve part = curve.points_between(first, last);
   for (auto run = knots.begin(); run != knots.end();) {
@@ -35,8 +35,9 @@ HomogeneousPoint point_with_knots(const HomogeneousCurve& curve, std::span<const
 }
 
 // `knots` with every different one once more.
-std::vector<double> with_one_more(std::span<const double> knots) {
-  std::vector<double> more;
+template <class K>
+std::vector<K> with_one_more(const std::vector<K>& knots) {
+  std::vector<K> more;
   for (std::size_t i = 0; i < knots.size(); ++i) {
     if (i == 0 || knots[i] != knots[i - 1]) more.push_back(knots[i]);
     more.push_back(knots[i]);
@@ -46,14 +47,14 @@ std::vector<double> with_one_more(std::span<const double> knots) {
 
 // Points of degree p + 1 over `raised`, the first `count` of them.
 std::vector<HomogeneousPoint> raised_points(const HomogeneousCurve& curve,
-                                            std::span<const double> raised, int count) {
+                                            std::span<const Knot> raised, int count) {
   const int p = curve.degree;
   std::vector<HomogeneousPoint> points;
   for (int j = 0; j < count; ++j) {
     HomogeneousPoint mean;
     mean.w = 0.0;
     for (int left_out = 0; left_out <= p; ++left_out) {
-      std::vector<double> knots(raised.begin() + j + 1, raised.begin() + j + p + 2);
+      std::vector<Knot> knots(raised.begin() + j + 1, raised.begin() + j + p + 2);
       knots.erase(knots.begin() + left_out);
       const HomogeneousPoint point = point_with_knots(curve, knots);
       for (std::size_t c = 0; c < mean.x.size(); ++c) mean.x[c] += point.x[c];
@@ -73,21 +74,10 @@ HomogeneousCurve unrolled(const NurbsCurve& curve) {
   HomogeneousCurve wide(curve);
   const std::vector<HomogeneousPoint> all = wide.points;
   const int n = static_cast<int>(all.size()) - p;
-  const std::vector<double> base = written_knots(wide.knots, p, true);
-  const double low = base.front(), high = base.back(), period = high - low;
-  // Shifted by one period as expanded_knots() shifts, so that the same numbers come out.
-  std::vector<double> before, after(base);
-  for (int shift = 1; shift <= 2; ++shift) {
-    for (int i = 1; i <= n; ++i) {
-      const double left = base[index_of(n - i)], right = base[index_of(i)];
-      const double to_left = left == high ? low - (shift - 1) * period : left - shift * period;
-      const double to_right = right == low ? high + (shift - 1) * period : right + shift * period;
-      before.push_back(before.empty() ? std::min(to_left, low) : std::min(to_left, before.back()));
-      after.push_back(std::max(to_right, after.back()));
-    }
+  wide.knots.clear();
+  for (int i = 0; i <= 5 * n; ++i) {
+    wide.knots.push_back(wide.domain.knot(curve.knots()[index_of(p + i % n)], i / n - 2));
   }
-  wide.knots.assign(before.rbegin(), before.rend());
-  wide.knots.insert(wide.knots.end(), after.begin(), after.end());
   wide.points.clear();
   for (int i = 0; i < 5 * n - p; ++i) wide.points.push_back(all[index_of((i + p) % n)]);
   return wide;
@@ -112,7 +102,7 @@ Result<NurbsCurve> elevate_periodic(const NurbsCurve& curve) {
   const int count = static_cast<int>(raised.size()) - 1;
   const std::vector<double> all = expanded_knots(raised, spec.degree, count, true);
   HomogeneousCurve result = unrolled(curve);
-  result.points = raised_points(result, all, count);
+  result.points = raised_points(result, KnotSequence{all, spec.degree, true}.all(), count);
   result.round_to(spec);
   spec.knots = raised;
   return NurbsCurve::create(std::move(spec));
@@ -140,7 +130,7 @@ Result<NurbsCurve> elevate_degree(const NurbsCurve& curve) {
     const auto part = sub_curve(curve, start, end);
     if (!part) return part.error();
     const HomogeneousCurve smooth(*part);
-    const std::vector<double> raised = with_one_more(smooth.knots);
+    const std::vector<Knot> raised = with_one_more(smooth.knots);
     const auto points =
         raised_points(smooth, raised, static_cast<int>(raised.size()) - spec.degree - 1);
     const bool first = whole.knots.empty();

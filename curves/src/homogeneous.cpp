@@ -17,14 +17,14 @@ void HomogeneousPoint::project(std::span<double> out) const noexcept {
   for (std::size_t c = 0; c < out.size(); ++c) out[c] = (x[c] / w).hi;
 }
 
-HomogeneousPoint blend(const HomogeneousPoint& a, const HomogeneousPoint& b, double left,
-                       double right, double at) noexcept {
-  if (at == left) return a;
-  if (at == right) return b;
-  // Both parts by division of differences: a small one is as exact as a large one.
-  const DoubleDouble width = DoubleDouble::difference(right, left);
-  const DoubleDouble of_a = DoubleDouble::difference(right, at) / width;
-  const DoubleDouble of_b = DoubleDouble::difference(at, left) / width;
+HomogeneousPoint blend(const HomogeneousPoint& a, const HomogeneousPoint& b, DoubleDouble from_left,
+                       DoubleDouble to_right) noexcept {
+  if (from_left.hi == 0) return a;
+  if (to_right.hi == 0) return b;
+  // Both parts by division of distances: a small one is as exact as a large one.
+  const DoubleDouble width = from_left + to_right;
+  const DoubleDouble of_a = to_right / width;
+  const DoubleDouble of_b = from_left / width;
   HomogeneousPoint mix;
   for (std::size_t c = 0; c < mix.x.size(); ++c) mix.x[c] = of_a * a.x[c] + of_b * b.x[c];
   mix.w = of_a * a.w + of_b * b.w;
@@ -32,7 +32,10 @@ HomogeneousPoint blend(const HomogeneousPoint& a, const HomogeneousPoint& b, dou
 }
 
 HomogeneousCurve::HomogeneousCurve(const NurbsCurve& curve)
-    : degree(curve.degree()), dim(curve.dim()), knots(curve.knots().begin(), curve.knots().end()) {
+    : degree(curve.degree()), dim(curve.dim()) {
+  const KnotSequence sequence{curve.knots(), degree, curve.is_periodic()};
+  domain = sequence.domain();
+  knots = sequence.all();
   const auto size = index_of(dim);
   for (std::size_t i = 0; i < curve.weights().size(); ++i) {
     points.emplace_back(curve.points().subspan(i * size, size), curve.weights()[i]);
@@ -43,23 +46,25 @@ HomogeneousCurve HomogeneousCurve::points_between(int first, int last) const {
   HomogeneousCurve part;
   part.degree = degree;
   part.dim = dim;
+  part.domain = domain;
   part.knots.assign(knots.begin() + first, knots.begin() + last + degree + 2);
   part.points.assign(points.begin() + first, points.begin() + last + 1);
   return part;
 }
 
-int HomogeneousCurve::multiplicity(double u) const {
+int HomogeneousCurve::multiplicity(Knot u) const {
   return static_cast<int>(std::count(knots.begin(), knots.end(), u));
 }
 
-void HomogeneousCurve::insert(double u) {
+void HomogeneousCurve::insert(Knot u) {
   const int p = degree;
-  const int span = find_span(knots, p, u, Side::right);
+  const int span = span_at(u, Side::right);
   std::array<HomogeneousPoint, kMaxDegree> blended;
   for (int r = 0; r < p; ++r) {
     const int i = span - p + 1 + r;
-    blended[index_of(r)] = blend(points[index_of(i - 1)], points[index_of(i)], knots[index_of(i)],
-                                 knots[index_of(i + p)], u);
+    blended[index_of(r)] =
+        blend(points[index_of(i - 1)], points[index_of(i)], domain.distance(knots[index_of(i)], u),
+              domain.distance(u, knots[index_of(i + p)]));
   }
   points.insert(points.begin() + span, HomogeneousPoint());
   std::copy_n(blended.begin(), p, points.begin() + (span - p + 1));
@@ -67,7 +72,8 @@ void HomogeneousCurve::insert(double u) {
 }
 
 void HomogeneousCurve::round_to(CurveSpec& spec) const {
-  spec.knots = knots;
+  spec.knots.clear();
+  for (const Knot& knot : knots) spec.knots.push_back(domain.rounded(knot));
   spec.points.resize(points.size() * index_of(dim));
   spec.weights.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -79,22 +85,24 @@ void HomogeneousCurve::round_to(CurveSpec& spec) const {
 void bezier_points(const HomogeneousCurve& curve, int span,
                    std::span<HomogeneousPoint> out) noexcept {
   const int p = curve.degree;
-  const double left = curve.knots[index_of(span)], right = curve.knots[index_of(span + 1)];
+  const Knot left = curve.knots[index_of(span)], right = curve.knots[index_of(span + 1)];
+  const DoubleDouble width = curve.domain.distance(left, right);
   std::copy_n(curve.points.begin() + (span - p), p + 1, out.begin());
   // As the blossom f(left^l, ...): after p levels out[j] = f(left^{p-j}, the j knots to the right).
   // Level l blends neighbours whose knots differ in one place; point j of it lands in out[j].
   for (int l = 1; l <= p; ++l) {
     for (int j = 0; j <= p - l; ++j) {
-      out[index_of(j)] =
-          blend(out[index_of(j)], out[index_of(j + 1)], curve.knots[index_of(span - p + l + j)],
-                curve.knots[index_of(span + 1 + j)], left);
+      out[index_of(j)] = blend(out[index_of(j)], out[index_of(j + 1)],
+                               curve.domain.distance(curve.knots[index_of(span - p + l + j)], left),
+                               curve.domain.distance(left, curve.knots[index_of(span + 1 + j)]));
     }
   }
   // Then f(left^{p-j}, right^j): the knots right of the span give way to its end.
   for (int l = 1; l <= p; ++l) {
     for (int j = p; j >= l; --j) {
-      out[index_of(j)] = blend(out[index_of(j - 1)], out[index_of(j)], left,
-                               curve.knots[index_of(span + 1 + j - l)], right);
+      out[index_of(j)] =
+          blend(out[index_of(j - 1)], out[index_of(j)], width,
+                curve.domain.distance(right, curve.knots[index_of(span + 1 + j - l)]));
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "knotwave/curves/algorithms.h"
 
 #include "double_double.h"
+#include "knot_domain.h"
 
 namespace knotwave::curves {
 
@@ -23,26 +24,26 @@ struct HomogeneousPoint {
   void project(std::span<double> out) const noexcept;
 };
 
-/// (at - left) / (right - left) of the way from a to b: inside when left <= at <= right.
-HomogeneousPoint blend(const HomogeneousPoint& a, const HomogeneousPoint& b, double left,
-                       double right, double at) noexcept;
+/// From a to b by `from_left` of from_left + to_right, neither negative.
+HomogeneousPoint blend(const HomogeneousPoint& a, const HomogeneousPoint& b, DoubleDouble from_left,
+                       DoubleDouble to_right) noexcept;
 
 struct HomogeneousCurve {
   int degree = 0;
   int dim = 0;
-  std::vector<double> knots;             ///< [n+p+1]
+  KnotDomain domain;                     ///< of the curve it was made from: measures its knots
+  std::vector<Knot> knots;               ///< [n+p+1]
   std::vector<HomogeneousPoint> points;  ///< [n]
 
   HomogeneousCurve() = default;
   explicit HomogeneousCurve(const NurbsCurve& curve);  ///< expanded if periodic
 
-  double u_min() const { return knots[static_cast<std::size_t>(degree)]; }
-  double u_max() const { return knots[points.size()]; }
   /// The part that points [first..last] make alone.
   HomogeneousCurve points_between(int first, int last) const;
-  int multiplicity(double u) const;
+  int span_at(Knot u, Side side) const { return span_of<Knot>(knots, degree, u, side); }
+  int multiplicity(Knot u) const;
   /// Boehm, u in the domain. (A5.1 once.)
-  void insert(double u);
+  void insert(Knot u);
   /// Into the numbers of a spec.
   void round_to(CurveSpec& spec) const;
 };

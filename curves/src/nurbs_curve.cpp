@@ -67,7 +67,7 @@ void NurbsCurve::evaluate(double u, std::span<double> out) const noexcept {
 void NurbsCurve::evaluate(double u, Side side, std::span<double> out) const noexcept {
   u = KnotDomain{u_min(), u_max(), periodic_}.place(u, side);
   const int span = find_span(knots_, degree_, u, side);
-  const SpanBasis basis(knots_, degree_, span, u);
+  const SpanBasis basis(KnotSequence{knots_, degree_, periodic_}, span, u);
   DoubleDouble share[kMaxDegree + 1];
   DoubleDouble total = 0.0;
   for (int r = 0; r <= degree_; ++r) {
@@ -88,7 +88,7 @@ void NurbsCurve::derivatives(double u, int order, Side side, std::span<double> o
   const int p = degree_;
   u = KnotDomain{u_min(), u_max(), periodic_}.place(u, side);
   const int span = find_span(knots_, p, u, side);
-  const SpanBasis basis(knots_, p, span, u);
+  const SpanBasis basis(KnotSequence{knots_, p, periodic_}, span, u);
   std::fill(out.begin(), out.begin() + (order + 1) * dim_, 0.0);
   evaluate(u, side, out.first(index_of(dim_)));
 
@@ -127,20 +127,12 @@ void NurbsCurve::derivatives(double u, int order, Side side, std::span<double> o
 }
 
 int find_span(std::span<const double> knots, int degree, double u, Side side) noexcept {
-  const auto first = knots.begin() + degree;
-  const auto last = knots.end() - degree - 1;  // the end of the domain
-  const bool at_start = !(u > *first);
-  const bool at_end = u >= *last;
-  const bool from_left = at_end || (side == Side::left && !at_start);
-  const double bounded = at_start ? *first : at_end ? *last : u;
-  const auto above =
-      from_left ? std::lower_bound(first, last, bounded) : std::upper_bound(first, last, bounded);
-  return static_cast<int>(above - knots.begin()) - 1;
+  return span_of(knots, degree, u, side);
 }
 
 void basis_functions(std::span<const double> knots, int degree, int span, double u,
                      std::span<double> out) noexcept {
-  const SpanBasis basis(knots, degree, span, u);
+  const SpanBasis basis(KnotSequence{knots, degree, false}, span, u);
   for (int r = 0; r <= degree; ++r) out[index_of(r)] = basis.rows[degree][r].hi;
 }
 

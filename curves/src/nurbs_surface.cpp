@@ -29,6 +29,13 @@ std::vector<double> open_rows(const std::vector<double>& flat, int row, int extr
   return open;
 }
 
+KnotSequence sequence_u(const NurbsSurface& surface) {
+  return {surface.knots_u(), surface.degree_u(), surface.is_periodic_u()};
+}
+KnotSequence sequence_v(const NurbsSurface& surface) {
+  return {surface.knots_v(), surface.degree_v(), false};
+}
+
 // Partial derivatives of the weighted surface, seen from `origin`, and of its weight.
 class Partials {
  public:
@@ -38,8 +45,8 @@ class Partials {
         origin_(origin),
         span_u_(find_span(surface.knots_u(), surface.degree_u(), u, Side::right)),
         span_v_(find_span(surface.knots_v(), surface.degree_v(), v, Side::right)) {
-    const SpanBasis along_u(surface.knots_u(), surface.degree_u(), span_u_, u);
-    const SpanBasis along_v(surface.knots_v(), surface.degree_v(), span_v_, v);
+    const SpanBasis along_u(sequence_u(surface), span_u_, u);
+    const SpanBasis along_v(sequence_v(surface), span_v_, v);
     for (int k = 0; k <= std::min(order, surface.degree_u()); ++k) along_u.derivative(k, u_[k]);
     for (int l = 0; l <= std::min(order, surface.degree_v()); ++l) along_v.derivative(l, v_[l]);
   }
@@ -119,12 +126,12 @@ SurfaceSpec NurbsSurface::spec() const {
 }
 
 void NurbsSurface::evaluate(double u, double v, std::span<double> out) const noexcept {
-  u = KnotDomain{u_min(), u_max(), periodic_u_}.place(u, Side::right);
-  v = KnotDomain{v_min(), v_max(), false}.place(v, Side::right);
+  u = sequence_u(*this).domain().place(u, Side::right);
+  v = sequence_v(*this).domain().place(v, Side::right);
   const int span_u = find_span(knots_u_, degree_u_, u, Side::right);
   const int span_v = find_span(knots_v_, degree_v_, v, Side::right);
-  const SpanBasis along_u(knots_u_, degree_u_, span_u, u);
-  const SpanBasis along_v(knots_v_, degree_v_, span_v, v);
+  const SpanBasis along_u(sequence_u(*this), span_u, u);
+  const SpanBasis along_v(sequence_v(*this), span_v, v);
   DoubleDouble sums[kMaxDim], total = 0.0;
   for (int b = 0; b <= degree_v_; ++b) {
     for (int a = 0; a <= degree_u_; ++a) {
@@ -142,8 +149,8 @@ void NurbsSurface::evaluate(double u, double v, std::span<double> out) const noe
 
 void NurbsSurface::derivatives(double u, double v, int order,
                                std::span<double> out) const noexcept {
-  u = KnotDomain{u_min(), u_max(), periodic_u_}.place(u, Side::right);
-  v = KnotDomain{v_min(), v_max(), false}.place(v, Side::right);
+  u = sequence_u(*this).domain().place(u, Side::right);
+  v = sequence_v(*this).domain().place(v, Side::right);
   const auto at = [&](int k, int l, int c) { return index_of((k * (order + 1) + l) * dim_ + c); };
   std::fill(out.begin(), out.begin() + (order + 1) * (order + 1) * dim_, 0.0);
   double origin[kMaxDim];
@@ -175,9 +182,9 @@ void NurbsSurface::derivatives(double u, double v, int order,
 }
 
 NurbsCurve NurbsSurface::iso_curve_at_v(double v0) const {
-  const double v = KnotDomain{v_min(), v_max(), false}.place(v0, Side::right);
+  const double v = sequence_v(*this).domain().place(v0, Side::right);
   const int span = find_span(knots_v_, degree_v_, v, Side::right);
-  const SpanBasis basis(knots_v_, degree_v_, span, v);
+  const SpanBasis basis(sequence_v(*this), span, v);
   const int count = count_u_ - (periodic_u_ ? degree_u_ : 0);
   CurveSpec spec{name_, degree_u_, dim_, {}, {}, {}, periodic_u_, {}};
   spec.knots = written_knots(knots_u_, degree_u_, periodic_u_);
@@ -188,9 +195,9 @@ NurbsCurve NurbsSurface::iso_curve_at_v(double v0) const {
 }
 
 NurbsCurve NurbsSurface::iso_curve_at_u(double u0) const {
-  const double u = KnotDomain{u_min(), u_max(), periodic_u_}.place(u0, Side::right);
+  const double u = sequence_u(*this).domain().place(u0, Side::right);
   const int span = find_span(knots_u_, degree_u_, u, Side::right);
-  const SpanBasis basis(knots_u_, degree_u_, span, u);
+  const SpanBasis basis(sequence_u(*this), span, u);
   CurveSpec spec{name_, degree_v_, dim_, {}, {}, knots_v_, false, {}};
   for (int j = 0; j < count_v_; ++j) {
     append_blend(spec, basis, degree_u_, j * count_u_ + span - degree_u_, 1);

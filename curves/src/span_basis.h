@@ -4,37 +4,27 @@
 #pragma once
 #include <span>
 
-#include "knotwave/curves/nurbs_curve.h"
-
-#include "double_double.h"
+#include "knot_domain.h"
 
 namespace knotwave::curves {
 
-/// rows[k][r] is N_{span-k+r, k}(u). Only k <= degree, r <= k are set. Every term is a product of
-/// numbers that are not negative, so each value is right to its own last bits.
+/// rows[k][r] is N_{span-k+r, k}(u), u in span `span`. Only k <= degree, r <= k are set. Every term
+/// is a product of numbers that are not negative, so each value is right to its own last bits.
 struct SpanBasis {
   DoubleDouble rows[kMaxDegree + 1][kMaxDegree + 1];
 
-  SpanBasis(std::span<const double> knots, int degree, int span, double u) noexcept;
+  SpanBasis(const KnotSequence& knots, int span, double u) noexcept;
 
   /// The k-th derivatives of the degree + 1 basis functions, k <= degree, to out[degree+1] (A2.3).
   void derivative(int k, std::span<DoubleDouble> out) const noexcept;
 
  private:
-  std::span<const double> knots_;
+  /// Length of the support of rows[k-1][r], which divides it on the way to degree k.
+  DoubleDouble support(int k, int r) const noexcept { return below_[k - 1 - r] + above_[r]; }
+
   int degree_;
-  int span_;
-};
-
-/// Where a curve is defined, and what a parameter outside of it means.
-struct KnotDomain {
-  double low = 0;
-  double high = 1;
-  bool periodic = false;
-
-  /// u inside [low, high]: clamped, or wrapped (high becomes low, except for Side::left, where low
-  /// becomes high). NaN and infinite phases count as low.
-  double place(double u, Side side) const noexcept;
+  DoubleDouble below_[kMaxDegree];  ///< u - knots[span - j]
+  DoubleDouble above_[kMaxDegree];  ///< knots[span + 1 + j] - u
 };
 
 }  // namespace knotwave::curves

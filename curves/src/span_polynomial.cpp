@@ -28,8 +28,8 @@ std::vector<SpanPolynomial> span_polynomials(const HomogeneousCurve& curve) {
   std::vector<HomogeneousPoint> points(at(p + 1));
   std::vector<DoubleDouble> bernstein(at(p + 1));
   for (int i = p; i < static_cast<int>(curve.points.size()); ++i) {
-    const double u0 = curve.knots[at(i)];
-    const double u1 = curve.knots[at(i) + 1];
+    const double u0 = curve.domain.rounded(curve.knots[at(i)]);
+    const double u1 = curve.domain.rounded(curve.knots[at(i) + 1]);
     if (!(u0 < u1)) continue;
     bezier_points(curve, i, points);
     SpanPolynomial span{u0, u1, p, curve.dim, true, {}};

@@ -88,7 +88,7 @@ TEST(CurveReferences, ValuesAndDerivativesAgreeWithExactRationals) {
       }
     }
   }
-  EXPECT_EQ(curves_read, 45);
+  EXPECT_EQ(curves_read, 60);
   EXPECT_GT(places, 200);
   std::printf("%d curves, %d places, worst value error %.3f ulp of max|P|\n", curves_read, places,
               worst_value_ulp);

@@ -26,18 +26,28 @@ std::vector<double> inner_knots(Dice& dice, int degree, int count) {
   return inner;
 }
 
+// A period from 0 to 1, now and then with knots right beside its seam: 2^-10 down to 2^-`nearest`.
+std::vector<double> period_of_knots(Dice& dice, int degree, int count, int nearest) {
+  std::vector<double> knots = inner_knots(dice, degree, count - 1);
+  if (knots.size() > 1 && dice.one_in(3)) {
+    knots.front() = std::ldexp(1.0, -10 - dice.below(nearest - 9));
+  }
+  if (knots.size() > 1 && dice.one_in(3)) knots.back() = 1 - std::ldexp(1.0, -10 - dice.below(20));
+  knots.insert(knots.begin(), 0.0);
+  knots.push_back(1.0);
+  return knots;
+}
+
 void fill_knots(Dice& dice, CurveSpec& spec, int count) {
   const int p = spec.degree;
-  if (!spec.periodic && dice.one_in(5)) return;  // left out; i/n would not shift exactly
+  if (dice.one_in(5)) return;  // left out
   const double scale = dice.one_in(3) ? std::ldexp(1.0, dice.below(40) - 20) : 1.0;
-  // Periods are shifted by doubles: on a grid of 2^-30 that is exact, so edits can be judged to 4
-  // ulp.
-  const double shift = dice.one_in(3) ? std::floor(dice.between(-1000, 1000)) : 0.0;
+  double shift = 0;
+  if (dice.one_in(3)) shift = std::floor(dice.between(-1000, 1000));
+  if (dice.one_in(3)) shift = dice.between(-2, 2);  // knots that a period does not shift exactly
   std::vector<double> knots;
   if (spec.periodic) {
-    knots = inner_knots(dice, p, count - 1);
-    knots.insert(knots.begin(), 0.0);
-    knots.push_back(1.0);
+    knots = period_of_knots(dice, p, count, shift == 0 ? 60 : 30);
   } else {
     knots = inner_knots(dice, p, count - p - 1);
     const bool clamped = !dice.one_in(4);
@@ -45,9 +55,6 @@ void fill_knots(Dice& dice, CurveSpec& spec, int count) {
       knots.insert(knots.begin(), clamped ? 0.0 : -0.01 * i);
       knots.push_back(clamped ? 1.0 : 1.0 + 0.3 * i);
     }
-  }
-  if (spec.periodic) {
-    for (double& knot : knots) knot = std::floor(std::ldexp(knot, 30)) * 0x1p-30;
   }
   for (double& knot : knots) knot = scale * (shift + knot);
   spec.knots = knots;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Edits that do not change the curve: exact in the reals, within 4 ulp of max|P| in double.
-// Periodic curves: as long as the period shifts their knots exactly; a shift that rounds moves the
-// knot. Source: Piegl & Tiller, The NURBS Book, 2nd ed.: A5.1 insertion, A5.6 decomposition.
+// Edits that do not change the curve: exact in the reals, within 4 ulp of max|P| in double. Source:
+// Piegl & Tiller, The NURBS Book, 2nd ed.: A5.1 insertion, A5.6 decomposition.
 #pragma once
 #include <vector>
 

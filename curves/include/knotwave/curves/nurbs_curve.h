@@ -59,7 +59,7 @@ class NurbsCurve {
   double u_max() const noexcept { return knots_[static_cast<std::size_t>(point_count())]; }
 
   /// Points as evaluated: a periodic curve has its first p points again at the end. n here. Its
-  /// knots go on to both sides, shifted by the period and rounded.
+  /// knots go on to both sides, shifted by the period; rounded here, exact in evaluation and edits.
   int point_count() const noexcept { return static_cast<int>(weights_.size()); }
   std::span<const double> points() const noexcept { return points_; }    ///< [n*dim]
   std::span<const double> weights() const noexcept { return weights_; }  ///< [n], 1 without

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "knot_domain.h"
+
+#include <cmath>
+
+namespace knotwave::curves {
+
+double KnotDomain::place(double u, Side side) const noexcept {
+  if (std::isnan(u)) return low;
+  if (!periodic) return std::clamp(u, low, high);
+  if (!std::isfinite(u)) return low;
+  if (u < low || u >= high) {
+    const DoubleDouble period = DoubleDouble::difference(high, low);
+    const double periods = std::floor((u - low) / period.hi);
+    u = (DoubleDouble(u) - period * DoubleDouble(periods)).hi;
+    if (!(u >= low && u < high)) u = low;  // one rounding below a whole number of periods
+  }
+  return side == Side::left && u == low ? high : u;
+}
+
+DoubleDouble KnotDomain::distance(Knot from, Knot to) const noexcept {
+  if (from.period == to.period) return DoubleDouble::difference(to.at, from.at);
+  DoubleDouble sum = DoubleDouble::difference(to.at, low);
+  sum += DoubleDouble::difference(high, from.at);
+  for (int i = from.period + 1; i < to.period; ++i) sum += DoubleDouble::difference(high, low);
+  return sum;
+}
+
+double KnotDomain::rounded(Knot knot) const noexcept {
+  if (knot.period == 0) return knot.at;
+  if (knot == Knot{1, low}) return high;
+  const DoubleDouble period = DoubleDouble::difference(high, low);
+  return (DoubleDouble(knot.at) + period * DoubleDouble(static_cast<double>(knot.period))).hi;
+}
+
+KnotDomain KnotSequence::domain() const noexcept {
+  const auto p = static_cast<std::size_t>(degree);
+  return {expanded[p], expanded[expanded.size() - p - 1], periodic};
+}
+
+Knot KnotSequence::operator[](int i) const noexcept {
+  if (!periodic) return {0, expanded[static_cast<std::size_t>(i)]};
+  const int n = static_cast<int>(expanded.size()) - 2 * degree - 1;  // knots of a period
+  const int period = i < degree ? -1 : i >= degree + n ? 1 : 0;
+  return domain().knot(expanded[static_cast<std::size_t>(i - period * n)], period);
+}
+
+std::vector<Knot> KnotSequence::all() const {
+  std::vector<Knot> knots;
+  for (int i = 0; i < static_cast<int>(expanded.size()); ++i) knots.push_back((*this)[i]);
+  return knots;
+}
+
+}  // namespace knotwave::curves

@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Writes tests/golden/curves/edits.txt: curves, what is done to them, and exact values of the result.
+
+An oracle from outside: the operation is not carried out at all. What it must give at u is computed
+pointwise in rationals from the curves it starts from (the product's value is the product of two
+values, that of a bent curve is the value at the bent parameter), with the Cox-de Boor recursion of
+make_curve_references.py, and rounded once. Standard library only.
+
+    tools/make_edit_references.py            writes the file
+    tools/make_edit_references.py --check    exit 1 if the file is not what would be written
+
+Format, one record a line, numbers as hexadecimal floats:
+    edit NAME ARGUMENTS...         starts a case
+    curve DEGREE DIM PERIODIC      one or two; each then has its knots, points, weights (may be
+    knots ...                      empty) and jumps, as a curve file has them
+    at U SIDE VALUES...            SIDE L or R; DIM numbers of the result
+"""
+import pathlib
+import random
+import sys
+from fractions import Fraction
+
+import make_curve_references as curves
+
+TARGET = pathlib.Path(__file__).resolve().parent.parent / "tests/golden/curves/edits.txt"
+curves.ORDER = 0  # values, no derivatives
+
+
+def value(curve, u, side="R"):
+    return curves.exact_derivatives(curve, u, side)[0]
+
+
+def domain(curve):
+    knots, p = curve["knots"], curve["degree"]
+    return (knots[0], knots[-1]) if curve["periodic"] else (knots[p], knots[-1 - p])
+
+
+def dyadic(rng, bits=10):
+    """In (0, 1), and so short that edits shift and mirror it without rounding."""
+    return rng.randrange(1, 1 << bits) / (1 << bits)
+
+
+def random_curve(rng, degree, dim=1, kind="random", rational=False, spans=3, size=1.0):
+    """Over [0, 1], knots on a grid of 2^-10. Kinds: segment, random, multiple, jump, unclamped."""
+    inner = [] if kind == "segment" else sorted(dyadic(rng) for _ in range(spans - 1))
+    if kind == "multiple":
+        inner = sorted(inner + [inner[0]] * (degree - 1))
+    if kind == "jump":
+        inner = sorted([x for x in inner if x != 0.5] + [0.5] * (degree + 1))
+    low, high = [0.0] * (degree + 1), [1.0] * (degree + 1)
+    if kind == "unclamped":
+        low = sorted(-dyadic(rng) for _ in range(degree)) + [0.0]
+        high = [1.0] + sorted(1 + dyadic(rng) for _ in range(degree))
+    count = len(inner) + degree + 1
+    return {
+        "degree": degree, "dim": dim, "periodic": False,
+        "knots": low + inner + high,
+        "points": [size * (2 * rng.random() - 1) for _ in range(count * dim)],
+        "weights": [0.25 + 4 * rng.random() for _ in range(count)] if rational else [],
+        "jumps": [0.5] if kind == "jump" else [],
+    }
+
+
+def places(rng, *knot_lists):
+    """Parameters and sides to look at: ends, both sides of some knots, between."""
+    low = max(knots[0] for knots in knot_lists)
+    high = min(knots[-1] for knots in knot_lists)
+    inner = sorted({k for knots in knot_lists for k in knots if low < k < high})
+    chosen = [(low, "R"), (high, "L")]
+    chosen += [(low + (high - low) * rng.random(), "R") for _ in range(3)]
+    for k in inner[:2] + inner[-1:]:
+        chosen += [(k, "L"), (k, "R")]
+    return chosen
+
+
+def inside(curve):
+    low, high = domain(curve)
+    return [k for k in curve["knots"] if low <= k <= high]
+
+
+KINDS = ["segment", "random", "multiple", "jump", "unclamped"]
+
+
+def paces(rng):
+    """reverse, reparametrize and bend: cases whose knots move without rounding."""
+    for degree in (1, 2, 3, 5, 8, 15):
+        for turn, kind in enumerate(KINDS):
+            curve = random_curve(rng, degree, 1 + turn % 3, kind, rational=turn % 2 == 1)
+            other = {"L": "R", "R": "L"}
+            yield ("reverse", [], [curve],
+                   [(1 - Fraction(u), other[side], value(curve, u, side))
+                    for u, side in places(rng, inside(curve)) if u * 2.0 ** 40 % 1 == 0])
+            yield ("reparametrize", [-3.0, 5.0], [curve],
+                   [(8 * Fraction(u) - 3, side, value(curve, u, side))
+                    for u, side in places(rng, inside(curve)) if u * 2.0 ** 40 % 1 == 0])
+        segment = random_curve(rng, degree, 2, "segment", rational=degree % 2 == 0)
+        for b in (0.3, 0.75, 1.1, 2.5):
+            if b ** degree < 1e-6:
+                continue
+            yield ("bend", [b], [segment],
+                   [(x, side, value(segment, bent(x, b), side))
+                    for x, side in places(rng, inside(segment))])
+    knots_of_3 = [0.25, 0.5]  # which 3 y / (1 + 2 y) makes 0.5 and 0.75
+    for degree in (1, 2, 3, 4):
+        curve = random_curve(rng, degree, 1, "segment", rational=degree % 2 == 1)
+        curve["knots"][degree + 1:degree + 1] = knots_of_3
+        curve["points"] += [rng.random(), rng.random()]
+        curve["weights"] += [0.5, 2.5] if curve["weights"] else []
+        yield ("bend", [3.0], [curve],
+               [(x, side, value(curve, bent(x, 3), side))
+                for x, side in places(rng, [0.0, 0.5, 0.75, 1.0])])
+
+
+def bent(x, b):
+    x, b = Fraction(x), Fraction(b)
+    return x / (x + b * (1 - x))
+
+
+def cases():
+    rng = random.Random(3)
+    yield from paces(rng)
+
+
+def text():
+    lines = ["# Made by tools/make_edit_references.py; its head explains the format."]
+    for name, arguments, operands, values in cases():
+        lines.append(f"edit {name} {curves.hexes(arguments)}".rstrip())
+        for curve in operands:
+            lines.append(f"curve {curve['degree']} {curve['dim']} {int(curve['periodic'])}")
+            for part in ("knots", "points", "weights", "jumps"):
+                lines.append(f"{part} {curves.hexes(curve[part])}".rstrip())
+        for u, side, numbers in values:
+            rounded = curves.hexes(curves.rounded(x) for x in numbers)
+            lines.append(f"at {float(u).hex()} {side} {rounded}")
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    if sys.argv[1:] == ["--check"]:
+        if TARGET.read_text() != text():
+            print(f"{TARGET} is not what {sys.argv[0]} writes", file=sys.stderr)
+            return 1
+        return 0
+    TARGET.write_text(text())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -32,14 +32,18 @@ HWY_INLINE Place place(base::Phase phase, int size_log2) {
   return {static_cast<std::size_t>(phase.value >> (64 - size_log2)), fraction - (1 << 23)};
 }
 
+// The operators of One and Many are no friends written in the class: gcc 12 gives those no target
+// attribute, so where nothing is inlined (-O0) they would look for their vectors on the stack, and
+// callers would leave them in registers.
+
 /// One sample, in the form the formulas below take.
 struct One {
   float v;
   static HWY_INLINE One of(float number) { return {number}; }
-  friend HWY_INLINE One operator+(One a, One b) { return {a.v + b.v}; }
-  friend HWY_INLINE One operator-(One a, One b) { return {a.v - b.v}; }
-  friend HWY_INLINE One operator*(One a, One b) { return {a.v * b.v}; }
 };
+HWY_INLINE One operator+(One a, One b) { return {a.v + b.v}; }
+HWY_INLINE One operator-(One a, One b) { return {a.v - b.v}; }
+HWY_INLINE One operator*(One a, One b) { return {a.v * b.v}; }
 
 template <class Number>
 HWY_INLINE Number quadratic(Number s, float c0, float c1, float c2) {
@@ -94,10 +98,10 @@ constexpr std::size_t kCount = HWY_MAX_BYTES >= 32 ? 8 : 4;
 struct Many {
   hn::Vec<Lanes> v;
   static HWY_INLINE Many of(float number) { return {hn::Set(kLanes, number)}; }
-  friend HWY_INLINE Many operator+(Many a, Many b) { return {hn::Add(a.v, b.v)}; }
-  friend HWY_INLINE Many operator-(Many a, Many b) { return {hn::Sub(a.v, b.v)}; }
-  friend HWY_INLINE Many operator*(Many a, Many b) { return {hn::Mul(a.v, b.v)}; }
 };
+HWY_INLINE Many operator+(Many a, Many b) { return {hn::Add(a.v, b.v)}; }
+HWY_INLINE Many operator-(Many a, Many b) { return {hn::Sub(a.v, b.v)}; }
+HWY_INLINE Many operator*(Many a, Many b) { return {hn::Mul(a.v, b.v)}; }
 
 /// a0 b0 a1 b1 (upper: a2 b2 a3 b3) of each 128-bit half.
 HWY_INLINE Many zip_lower(Many a, Many b) { return {hn::InterleaveLower(kLanes, a.v, b.v)}; }

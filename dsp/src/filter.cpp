@@ -2,15 +2,17 @@
 #include "knotwave/dsp/filter.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 
 #include "knotwave/base/elementary.h"
 #include "knotwave/base/fp_state.h"
 
+#include "elementary_kernel.h"
+
 namespace knotwave::dsp {
 namespace {
 
-constexpr std::size_t kChunk = 64;
+constexpr std::size_t kChunk = kFilterChunk;
 constexpr double kLowestHz = 5;
 constexpr double kHighestCycles = 0.49;  // of the sample rate
 constexpr double kLargestInput = 1e6;
@@ -27,44 +29,47 @@ constexpr double audio_input(float x) {
   return value == value ? limit(value, -kLargestInput, kLargestInput) : 0;
 }
 
-/// The four numbers a sample is worked out with, for a chunk of samples.
-struct Moving {
-  std::array<double, kChunk> k, a1, a2, a3;
-};
+bool is_tiny(double x) { return std::abs(x) < 1e-20; }
 
-// With g = tan(pi cutoff / rate) = s / c: a1 = 1 / (1 + g (g + k)), a2 = g a1, a3 = g a2.
+double damping(float resonance) KNOTWAVE_RT {
+  return 2 * base::exp2(-kLog2Of100 * limit(static_cast<double>(resonance), 0, 1));
+}
+
+// One value a sample of the chunk; where nothing moves, one for all of them.
+void work_out_damping(const float* resonance, std::size_t n, double* k) KNOTWAVE_RT {
+  if (std::all_of(resonance, resonance + n, [&](float r) { return r == resonance[0]; })) {
+    std::fill_n(k, n, damping(resonance[0]));
+    return;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    k[i] = -kLog2Of100 * limit(static_cast<double>(resonance[i]), 0, 1);
+  }
+  elementary_kernels_in_use().exp2(k, k, n);
+  for (std::size_t i = 0; i < n; ++i) k[i] = 2 * k[i];
+}
+
 void work_out(const float* cutoff_hz, const float* resonance, double rate_hz, std::size_t n,
-              Moving& m) {
-  const double highest = kHighestCycles * rate_hz;
-  const double half_cycles_per_hz = 0.5 / rate_hz;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (i > 0 && resonance[i] == resonance[i - 1]) {
-      m.k[i] = m.k[i - 1];  // the same input, the same bits
-    } else {
-      m.k[i] = 2 * base::exp2(-kLog2Of100 * limit(static_cast<double>(resonance[i]), 0, 1));
-    }
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const double cutoff = limit(static_cast<double>(cutoff_hz[i]), kLowestHz, highest);
-    const base::SinCos half_turn = base::sin_cos_cycles(cutoff * half_cycles_per_hz);
-    const double s = half_turn.sin, c = half_turn.cos;
-    const double scale = 1 / (c * c + s * (s + m.k[i] * c));
-    m.a1[i] = c * c * scale;
-    m.a2[i] = s * c * scale;
-    m.a3[i] = s * s * scale;
-  }
+              FilterCoefficients& c) KNOTWAVE_RT {
+  work_out_damping(resonance, n, c.k.data());
+  const CutoffRange range{kLowestHz, kHighestCycles * rate_hz, 0.5 / rate_hz};
+  elementary_kernels_in_use().filter(cutoff_hz, range, c, n);
 }
 
 }  // namespace
 
 template <FilterKind kind>
-float StateVariableFilter::tick(const Coefficients& c, float in) KNOTWAVE_RT {
+float StateVariableFilter::tick(const Coefficients& c, State& state, float in) KNOTWAVE_RT {
   const double x = audio_input(in);
-  const double v3 = x - ic2_;
-  const double band = c.a1 * ic1_ + c.a2 * v3;
-  const double low = ic2_ + c.a2 * ic1_ + c.a3 * v3;
-  ic1_ = base::snap_to_zero(2 * band - ic1_);
-  ic2_ = base::snap_to_zero(2 * low - ic2_);
+  const double v3 = x - state.ic2;
+  const double band = c.a1 * state.ic1 + c.a2 * v3;
+  const double low = state.ic2 + c.a2 * state.ic1 + c.a3 * v3;
+  state.ic1 = 2 * band - state.ic1;
+  state.ic2 = 2 * low - state.ic2;
+  // A branch, which is foretold, and not a select, which every sample would wait for.
+  if (is_tiny(state.ic1) || is_tiny(state.ic2)) [[unlikely]] {
+    state.ic1 = base::snap_to_zero(state.ic1);
+    state.ic2 = base::snap_to_zero(state.ic2);
+  }
   if constexpr (kind == FilterKind::low) return static_cast<float>(low);
   if constexpr (kind == FilterKind::band) return static_cast<float>(c.k * band);
   if constexpr (kind == FilterKind::high) return static_cast<float>(x - c.k * band - low);
@@ -75,30 +80,29 @@ template <FilterKind kind>
 void StateVariableFilter::run(double rate_hz, std::span<const float> cutoff_hz,
                               std::span<const float> resonance, std::span<const float> in,
                               std::span<float> out) KNOTWAVE_RT {
-  Moving moving;
+  FilterCoefficients moving;
   for (std::size_t done = 0; done < out.size(); done += kChunk) {
     const std::size_t n = std::min(kChunk, out.size() - done);
     const float* cutoff = cutoff_hz.data() + done;
     const float* q = resonance.data() + done;
     bool still = rate_hz == rate_hz_;
     for (std::size_t i = 0; i < n; ++i) still &= cutoff[i] == cutoff_hz_ && q[i] == resonance_;
-    StateVariableFilter state = *this;  // in registers
+    State state = state_;  // in registers
+    Coefficients c = coefficients_;
     if (still) {
-      for (std::size_t i = 0; i < n; ++i) {
-        out[done + i] = state.template tick<kind>(coefficients_, in[done + i]);
-      }
+      for (std::size_t i = 0; i < n; ++i) out[done + i] = tick<kind>(c, state, in[done + i]);
     } else {
       work_out(cutoff, q, rate_hz, n, moving);
       for (std::size_t i = 0; i < n; ++i) {
-        coefficients_ = {moving.k[i], moving.a1[i], moving.a2[i], moving.a3[i]};
-        out[done + i] = state.template tick<kind>(coefficients_, in[done + i]);
+        c = {moving.k[i], moving.a1[i], moving.a2[i], moving.a3[i]};
+        out[done + i] = tick<kind>(c, state, in[done + i]);
       }
+      coefficients_ = c;
       rate_hz_ = rate_hz;
       cutoff_hz_ = cutoff[n - 1];
       resonance_ = q[n - 1];
     }
-    ic1_ = state.ic1_;
-    ic2_ = state.ic2_;
+    state_ = state;
   }
 }
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "knotwave/dsp/elementary_block.h"
+
 namespace knotwave::dsp {
 namespace {
 
@@ -112,35 +114,59 @@ void Lfo::draw_levels(std::uint64_t cycle) KNOTWAVE_RT {
   has_levels_ = true;
 }
 
+/// What the places of a chunk are worked out from, and where they go.
+struct Lfo::Chunk {
+  std::size_t n = 0;
+  std::span<const double> rate_factor, tempo_beats;  ///< [n] or empty
+  std::array<double, kChunk> u, from, step;          ///< from, step: levels of a random LFO
+};
+
+void Lfo::place_each(const LfoSpec& spec, const curves::CurveProgram& cycle, std::int64_t first,
+                     Chunk& chunk) KNOTWAVE_RT {
+  const double u_min = cycle.u_min(), width = cycle.u_max() - cycle.u_min();
+  const std::int64_t running = base::first_sample(phase_start_);
+  const bool is_once = spec.mode == LfoSpec::Mode::one_shot;
+  Position plain = at_sample(first);
+  for (std::size_t i = 0; i < chunk.n; ++i) {
+    const std::int64_t sample = first + static_cast<std::int64_t>(i);
+    const double factor = chunk.rate_factor.empty() ? 1.0 : chunk.rate_factor[i];
+    const Position position = chunk.tempo_beats.empty()
+                                  ? in_time(spec, sample, factor, plain)
+                                  : in_song(spec, sample, factor, chunk.tempo_beats[i]);
+    plain = sample >= running ? sum(plain, {0, increment_}) : at_sample(sample + 1);
+    const bool is_over = is_once && position.cycle != 0;
+    chunk.u[i] = is_over ? cycle.u_max() : u_min + base::Phase{position.phase}.cycles() * width;
+    if (spec.random) {
+      draw_levels(is_over ? 0 : position.cycle);
+      chunk.from[i] = level_from_;
+      chunk.step[i] = level_to_ - level_from_;
+    }
+  }
+}
+
 void Lfo::render(const LfoSpec& spec, const curves::CurveProgram& cycle, std::int64_t first,
                  std::span<const double> rate_factor, std::span<const double> tempo_beats,
                  std::span<double> out) KNOTWAVE_RT {
-  const double u_min = cycle.u_min(), width = cycle.u_max() - cycle.u_min();
-  const bool is_synced = spec.beats > 0 && !tempo_beats.empty();
-  const std::int64_t running = base::first_sample(phase_start_);
-  const bool is_once = spec.mode == LfoSpec::Mode::one_shot;
-  std::array<double, kChunk> u, from, step;
+  if (!(spec.beats > 0)) tempo_beats = {};
+  const bool is_even = rate_factor.empty() && tempo_beats.empty() && !spec.random &&
+                       spec.mode != LfoSpec::Mode::one_shot;
+  Chunk chunk;
   for (std::size_t done = 0; done < out.size(); done += kChunk) {
     const auto part = out.subspan(done, std::min(kChunk, out.size() - done));
     const std::int64_t here = first + static_cast<std::int64_t>(done);
-    Position plain = at_sample(here);
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      const std::int64_t sample = here + static_cast<std::int64_t>(i);
-      const double factor = rate_factor.empty() ? 1.0 : rate_factor[done + i];
-      const Position position = is_synced ? in_song(spec, sample, factor, tempo_beats[done + i])
-                                          : in_time(spec, sample, factor, plain);
-      plain = sample >= running ? sum(plain, {0, increment_}) : at_sample(sample + 1);
-      const bool is_over = is_once && position.cycle != 0;
-      u[i] = is_over ? cycle.u_max() : u_min + base::Phase{position.phase}.cycles() * width;
-      if (spec.random) {
-        draw_levels(is_over ? 0 : position.cycle);
-        from[i] = level_from_;
-        step[i] = level_to_ - level_from_;
-      }
+    chunk.n = part.size();
+    const auto u = std::span(chunk.u).first(part.size());
+    if (is_even && here >= base::first_sample(phase_start_)) {
+      const base::Phase phase{sum(at_sample(here), extra_).phase};
+      phase_ramp(phase, {increment_}, cycle.u_min(), cycle.u_max() - cycle.u_min(), u);
+    } else {
+      if (!rate_factor.empty()) chunk.rate_factor = rate_factor.subspan(done, part.size());
+      if (!tempo_beats.empty()) chunk.tempo_beats = tempo_beats.subspan(done, part.size());
+      place_each(spec, cycle, here, chunk);
     }
-    cycle.render(std::span<const double>(u).first(part.size()), part, cursor_);
+    cycle.render(std::span<const double>(u), part, cursor_);
     for (std::size_t i = 0; spec.random && i < part.size(); ++i) {
-      part[i] = from[i] + step[i] * part[i];
+      part[i] = chunk.from[i] + chunk.step[i] * part[i];
     }
     for (std::size_t i = 0; spec.fade_s > 0 && i < part.size(); ++i) {
       part[i] *= depth(spec, here + static_cast<std::int64_t>(i));

@@ -5,7 +5,9 @@
 #include <array>
 #include <cstddef>
 
+#include "knotwave/base/elementary.h"
 #include "knotwave/base/rt.h"
+#include "knotwave/dsp/elementary_block.h"
 
 namespace knotwave::engine {
 
@@ -59,6 +61,19 @@ inline Signal sum(const Signal& a, const Signal& b, std::size_t n,
 inline Signal product(const Signal& a, const Signal& b, std::size_t n,
                       ChunkBuffer& buffer) KNOTWAVE_RT {
   return combined(a, b, n, buffer, [](double x, double y) { return x * y; });
+}
+
+/// 2^x of every value, as mapped().
+inline Signal power_of_2(const Signal& in, std::size_t n, ChunkBuffer& buffer) KNOTWAVE_RT {
+  if (in.is_constant()) return {base::exp2(in.constant), nullptr};
+  dsp::exp2(std::span(in.values, n), std::span(buffer).first(n));
+  return {0, buffer.data()};
+}
+/// Gain of every level in decibels, as mapped().
+inline Signal gain_of_db(const Signal& in, std::size_t n, ChunkBuffer& buffer) KNOTWAVE_RT {
+  if (in.is_constant()) return {base::db_to_gain(in.constant), nullptr};
+  dsp::db_to_gain(std::span(in.values, n), std::span(buffer).first(n));
+  return {0, buffer.data()};
 }
 
 }  // namespace knotwave::engine

@@ -210,8 +210,7 @@ void Modulation::render_lfo(const PatchProgram& patch, std::size_t index, const 
   const PatchProgram::LfoPart& part = patch.lfos()[index];
   std::span<const double> rate_factor, beats;
   if (part.rate_moves) {
-    const Signal factor = mapped(scratch.slots[kSlotLfoRate + index], n, scratch.source,
-                                 [](double x) { return base::exp2(x); });
+    const Signal factor = power_of_2(scratch.slots[kSlotLfoRate + index], n, scratch.source);
     if (factor.is_constant()) std::fill_n(scratch.source.begin(), n, factor.constant);
     rate_factor = std::span(scratch.source).first(n);
   }

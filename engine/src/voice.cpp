@@ -165,8 +165,7 @@ void Voice::render_amp(std::int64_t first, std::size_t n, VoiceScratch& scratch)
     velocity.values = scratch.work.data();
   }
   gain = product(gain, velocity, n, scratch.amp);
-  const Signal level = mapped(modulation.slots[kSlotAmp], n, scratch.work,
-                              [](double db) { return base::db_to_gain(db); });
+  const Signal level = gain_of_db(modulation.slots[kSlotAmp], n, scratch.work);
   gain = product(gain, level, n, scratch.amp);
   const Signal factor = mapped(modulation.slots[kSlotGain], n, scratch.work,
                                [](double x) { return std::max(0.0, 1 + x); });

@@ -70,14 +70,12 @@ void Voice::render_oscillator(std::size_t index, std::size_t n, const Signal& pi
   Signal own = mapped(part.is_fixed ? fixed : pitch, n, scratch.source_pitch,
                       [&](double x) { return x + part.semitones; });
   own = sum(own, slots[kSlotSourcePitch + index], n, scratch.source_pitch);
-  const Signal hz =
-      mapped(own, n, scratch.source_pitch, [](double note) { return base::note_to_hz(note); });
-  if (hz.is_constant()) {
-    std::fill_n(scratch.increments.begin(), n, base::phase_increment(hz.constant, start_.rate_hz));
+  const auto increments = std::span(scratch.increments).first(n);
+  if (own.is_constant()) {
+    const double hz = base::note_to_hz(own.constant);
+    std::fill(increments.begin(), increments.end(), base::phase_increment(hz, start_.rate_hz));
   } else {
-    for (std::size_t i = 0; i < n; ++i) {
-      scratch.increments[i] = base::phase_increment(hz.values[i], start_.rate_hz);
-    }
+    dsp::note_increments(std::span(own.values, n), start_.rate_hz, increments);
   }
   std::span<const float> positions, phases;
   if (part.tables->rows() > 1) {
@@ -97,8 +95,8 @@ void Voice::render_oscillator(std::size_t index, std::size_t n, const Signal& pi
     to_floats(slots[kSlotSourcePhase + index], n, scratch.control_b);
     phases = std::span(scratch.control_b).first(n);
   }
-  oscillators_[index].render(*part.tables, std::span(scratch.increments).first(n), positions,
-                             phases, std::span(scratch.source_left).first(n),
+  oscillators_[index].render(*part.tables, increments, positions, phases,
+                             std::span(scratch.source_left).first(n),
                              std::span(scratch.source_right).first(patch_->is_mono() ? 0 : n));
   mix_source(static_cast<int>(index), part, n, scratch);
 }
@@ -107,8 +105,7 @@ void Voice::mix_source(int source, const PatchProgram::Source& part, std::size_t
                        VoiceScratch& scratch) KNOTWAVE_RT {
   const ModulationScratch& modulation = scratch.modulation;
   const auto index = static_cast<std::size_t>(source);
-  const Signal level = mapped(modulation.slots[kSlotSourceLevel + index], n, scratch.work,
-                              [](double db) { return base::db_to_gain(db); });
+  const Signal level = gain_of_db(modulation.slots[kSlotSourceLevel + index], n, scratch.work);
   Signal gain = product({part.gain_lin, nullptr}, level, n, scratch.gain);
   const Signal factor = mapped(modulation.slots[kSlotSourceGain + index], n, scratch.work,
                                [](double x) { return std::max(0.0, 1 + x); });
@@ -151,10 +148,9 @@ void Voice::mix_source(int source, const PatchProgram::Source& part, std::size_t
 void Voice::shape(std::size_t n, VoiceScratch& scratch) KNOTWAVE_RT {
   const dsp::ShaperProgram* shaper = patch_->shaper();
   if (shaper == nullptr) return;
-  const Signal drive =
-      mapped(scratch.modulation.slots[kSlotDrive], n, scratch.work,
-             [&](double db) { return base::db_to_gain(patch_->spec().shaper_drive_db + db); });
-  to_floats(drive, n, scratch.control_a);
+  const Signal drive_db = mapped(scratch.modulation.slots[kSlotDrive], n, scratch.work,
+                                 [&](double db) { return patch_->spec().shaper_drive_db + db; });
+  to_floats(gain_of_db(drive_db, n, scratch.work), n, scratch.control_a);
   const auto mix = static_cast<float>(patch_->spec().shaper_mix);
   const std::span<const float> drives = std::span(scratch.control_a).first(n);
   const std::span<float> left = std::span(scratch.mix_left).first(n);
@@ -171,9 +167,10 @@ void Voice::filter(std::size_t n, const Signal& key_pitch, VoiceScratch& scratch
     return spec.filter_key_track * (pitch - kMiddleC);
   });
   semitones = sum(semitones, scratch.modulation.slots[kSlotCutoff], n, scratch.work);
-  const Signal cutoff = mapped(semitones, n, scratch.work, [&](double x) {
-    return spec.filter_cutoff_hz * base::exp2(x / 12);
-  });
+  const Signal octaves = mapped(semitones, n, scratch.work, [](double x) { return x / 12; });
+  const Signal factor = power_of_2(octaves, n, scratch.work);
+  const Signal cutoff =
+      mapped(factor, n, scratch.work, [&](double x) { return spec.filter_cutoff_hz * x; });
   to_floats(cutoff, n, scratch.control_a);
   const Signal resonance = mapped(scratch.modulation.slots[kSlotResonance], n, scratch.work,
                                   [&](double x) { return spec.filter_resonance + x; });

@@ -31,13 +31,16 @@ class StateVariableFilter {
   struct Coefficients {
     double k = 2, a1 = 1, a2 = 0, a3 = 0;
   };
+  struct State {
+    double ic1 = 0, ic2 = 0;
+  };
   template <FilterKind kind>
-  float tick(const Coefficients& c, float in) KNOTWAVE_RT;
+  static float tick(const Coefficients& c, State& state, float in) KNOTWAVE_RT;
   template <FilterKind kind>
   void run(double rate_hz, std::span<const float> cutoff_hz, std::span<const float> resonance,
            std::span<const float> in, std::span<float> out) KNOTWAVE_RT;
 
-  double ic1_ = 0, ic2_ = 0;
+  State state_;
   double rate_hz_ = 0;  ///< what coefficients_ were worked out for; 0 = nothing yet
   float cutoff_hz_ = 0, resonance_ = 0;
   Coefficients coefficients_;

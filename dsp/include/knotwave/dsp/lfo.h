@@ -53,6 +53,9 @@ class Lfo {
   static Position difference(Position a, Position b) KNOTWAVE_RT;
   static Position from_cycles(double cycles) KNOTWAVE_RT;
 
+  struct Chunk;
+  void place_each(const LfoSpec& spec, const curves::CurveProgram& cycle, std::int64_t first,
+                  Chunk& chunk) KNOTWAVE_RT;
   Position at_sample(std::int64_t sample) const KNOTWAVE_RT;
   Position at_beats(const LfoSpec& spec, std::int64_t sample, double beats) KNOTWAVE_RT;
   Position in_time(const LfoSpec& spec, std::int64_t sample, double factor,

@@ -68,6 +68,9 @@ double largest_knot(const NurbsCurve& curve) {
   return largest;
 }
 
+// Random curves have knots 2^-60 beside others; elsewhere a double cannot tell them apart.
+bool knots_fell_together(const Error& error) { return error.code == ErrorCode::knot_multiplicity; }
+
 TEST(Reverse, SwapsPointsWeightsAndMirrorsKnots) {
   const auto back = reverse(made(spec_of(2, {0, 3, 1, 5}, {0, 0, 0, 0.25, 1, 1, 1}, {1, 2, 3, 4})));
   ASSERT_TRUE(back) << back.error().message;
@@ -87,10 +90,13 @@ TEST(Reverse, LeftAndRightOfAJumpChangePlaces) {
 
 TEST(Reverse, TwiceGivesPointsToTheBitAndKnotsWithinAnUlp) {
   Dice dice(support::test_seed());
+  int reversed = 0;
   for (int round = 0; round < support::test_count(10'000); ++round) {
     const NurbsCurve curve = random_curve(dice);
     const auto back = reverse(curve);
+    if (!back && knots_fell_together(back.error())) continue;
     ASSERT_TRUE(back) << back.error().message;
+    ++reversed;
     const auto again = reverse(*back);
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_THAT(again->points(), ElementsAreArray(curve.points()));
@@ -98,11 +104,11 @@ TEST(Reverse, TwiceGivesPointsToTheBitAndKnotsWithinAnUlp) {
     EXPECT_EQ(again->u_min(), curve.u_min());
     EXPECT_EQ(again->u_max(), curve.u_max());
     EXPECT_EQ(again->is_periodic(), curve.is_periodic());
-    const double ulp = ulp_of(largest_knot(curve));
-    for (std::size_t i = 0; i < curve.knots().size(); ++i) {
-      ASSERT_NEAR(again->knots()[i], curve.knots()[i], ulp);
-    }
+    const double ulp = ulp_of(std::max(largest_knot(curve), largest_knot(*back)));
+    const std::vector<double> before = curve.spec().knots, after = again->spec().knots;
+    for (std::size_t i = 0; i < before.size(); ++i) ASSERT_NEAR(after[i], before[i], ulp);
   }
+  EXPECT_GT(reversed, support::test_count(9500));
 }
 
 // Where 1 - knot is exact the curve is the same one to the last bit that evaluation has.
@@ -148,11 +154,14 @@ TEST(Reverse, KnotsThatFallTogetherAreAnError) {
 
 TEST(Reparametrize, KeepsPointsToTheBitAndHitsBothEnds) {
   Dice dice(support::test_seed());
+  int done = 0;
   for (int round = 0; round < support::test_count(10'000); ++round) {
     const NurbsCurve curve = random_curve(dice);
     const double a = dice.between(-1000, 1000), b = a + dice.between(1, 1000);
     const auto moved = reparametrize(curve, a, b);
+    if (!moved && knots_fell_together(moved.error())) continue;
     ASSERT_TRUE(moved) << moved.error().message;
+    ++done;
     EXPECT_EQ(moved->u_min(), a);
     EXPECT_EQ(moved->u_max(), b);
     EXPECT_THAT(moved->points(), ElementsAreArray(curve.points()));
@@ -163,10 +172,10 @@ TEST(Reparametrize, KeepsPointsToTheBitAndHitsBothEnds) {
     const double length = curve.u_max() - curve.u_min();
     const double allowed =
         2 * ulp_of(largest_knot(curve)) + ulp_of(largest_knot(*moved)) * length / (b - a);
-    for (std::size_t i = 0; i < curve.knots().size(); ++i) {
-      ASSERT_NEAR(back->knots()[i], curve.knots()[i], allowed);
-    }
+    const std::vector<double> before = curve.spec().knots, after = back->spec().knots;
+    for (std::size_t i = 0; i < before.size(); ++i) ASSERT_NEAR(after[i], before[i], allowed);
   }
+  EXPECT_GT(done, support::test_count(9500));
 }
 
 TEST(Reparametrize, TakesJumpsAlongWithTheirKnots) {

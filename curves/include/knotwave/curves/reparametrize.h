@@ -10,9 +10,9 @@ namespace knotwave::curves {
 
 /// D(u) = C(u_min + u_max - u): the curve backwards over the same domain. Left and right limits at
 /// a jump change places. reverse(reverse(c)) has the same points and weights, and knots within 1
-/// ulp of max|u|. Errors: knot_multiplicity (knots that differed are equal after rounding and
-/// together come too often), value_out_of_range (a knot before or after the domain would pass
-/// kMaxKnot).
+/// ulp of the largest of both curves. Errors: knot_multiplicity (knots that differed are equal
+/// after rounding and together come too often), value_out_of_range (a knot before or after the
+/// domain would pass kMaxKnot).
 Result<NurbsCurve> reverse(const NurbsCurve& curve);
 
 /// D over [u_a, u_b], D(u) = C at the same fraction of the domain. Points and weights are kept to

@@ -8,7 +8,7 @@
 #include "knotwave/base/document.h"
 
 #include "homogeneous.h"
-#include "spec_checks.h"
+#include "spec_layout.h"
 
 namespace knotwave::curves {
 namespace {

@@ -18,8 +18,7 @@ double KnotDomain::place(double u, Side side) const noexcept {
   return side == Side::left && u == low ? high : u;
 }
 
-DoubleDouble KnotDomain::distance(Knot from, Knot to) const noexcept {
-  if (from.period == to.period) return DoubleDouble::difference(to.at, from.at);
+DoubleDouble KnotDomain::distance_across_seams(Knot from, Knot to) const noexcept {
   DoubleDouble sum = DoubleDouble::difference(to.at, low);
   sum += DoubleDouble::difference(high, from.at);
   for (int i = from.period + 1; i < to.period; ++i) sum += DoubleDouble::difference(high, low);
@@ -33,13 +32,7 @@ double KnotDomain::rounded(Knot knot) const noexcept {
   return (DoubleDouble(knot.at) + period * DoubleDouble(static_cast<double>(knot.period))).hi;
 }
 
-KnotDomain KnotSequence::domain() const noexcept {
-  const auto p = static_cast<std::size_t>(degree);
-  return {expanded[p], expanded[expanded.size() - p - 1], periodic};
-}
-
-Knot KnotSequence::operator[](int i) const noexcept {
-  if (!periodic) return {0, expanded[static_cast<std::size_t>(i)]};
+Knot KnotSequence::knot_of_period(int i) const noexcept {
   const int n = static_cast<int>(expanded.size()) - 2 * degree - 1;  // knots of a period
   const int period = i < degree ? -1 : i >= degree + n ? 1 : 0;
   return domain().knot(expanded[static_cast<std::size_t>(i - period * n)], period);

@@ -36,8 +36,14 @@ struct KnotDomain {
     return periodic && u == high ? Knot{period + 1, low} : Knot{period, u};
   }
   /// to - from for from <= to, right to 2^-103 of itself.
-  DoubleDouble distance(Knot from, Knot to) const noexcept;
+  DoubleDouble distance(Knot from, Knot to) const noexcept {
+    if (from.period == to.period) return DoubleDouble::difference(to.at, from.at);
+    return distance_across_seams(from, to);
+  }
   double rounded(Knot knot) const noexcept;
+
+ private:
+  DoubleDouble distance_across_seams(Knot from, Knot to) const noexcept;
 };
 
 /// The knots that create() keeps, expanded_knots(), as they are meant.
@@ -46,9 +52,17 @@ struct KnotSequence {
   int degree = 0;
   bool periodic = false;
 
-  KnotDomain domain() const noexcept;
-  Knot operator[](int i) const noexcept;
+  KnotDomain domain() const noexcept {
+    const auto p = static_cast<std::size_t>(degree);
+    return {expanded[p], expanded[expanded.size() - p - 1], periodic};
+  }
+  Knot operator[](int i) const noexcept {
+    return periodic ? knot_of_period(i) : Knot{0, expanded[static_cast<std::size_t>(i)]};
+  }
   std::vector<Knot> all() const;
+
+ private:
+  Knot knot_of_period(int i) const noexcept;
 };
 
 /// find_span() for knots of either kind.

@@ -6,6 +6,7 @@
 
 #include "span_basis.h"
 #include "spec_checks.h"
+#include "spec_layout.h"
 
 namespace knotwave::curves {
 namespace {
@@ -23,20 +24,11 @@ Result<NurbsCurve> NurbsCurve::create(CurveSpec spec) {
   curve.periodic_ = spec.periodic;
   const int written = static_cast<int>(spec.points.size()) / spec.dim;
   curve.knots_ = expanded_knots(spec.knots, spec.degree, written, spec.periodic);
-  curve.points_ = std::move(spec.points);
-  curve.weights_ = std::move(spec.weights);
-  curve.weights_.resize(index_of(written), 1.0);
+  const int extra = spec.periodic ? spec.degree : 0;
+  curve.points_ = closed_rows(std::move(spec.points), written * spec.dim, extra * spec.dim);
+  curve.weights_ = expanded_weights(std::move(spec.weights), written, written, extra);
   curve.jumps_ = std::move(spec.jumps);
-  if (spec.periodic) {
-    const auto p = index_of(spec.degree), numbers = p * index_of(spec.dim);
-    curve.points_.reserve(curve.points_.size() + numbers);
-    curve.weights_.reserve(curve.weights_.size() + p);
-    for (std::size_t i = 0; i < numbers; ++i) curve.points_.push_back(curve.points_[i]);
-    for (std::size_t i = 0; i < p; ++i) curve.weights_.push_back(curve.weights_[i]);
-  }
-  const double first = curve.weights_.front();
-  curve.rational_ = std::any_of(curve.weights_.begin(), curve.weights_.end(),
-                                [first](double w) { return w != first; });
+  curve.rational_ = makes_rational(curve.weights_);
   return curve;
 }
 
@@ -48,11 +40,9 @@ CurveSpec NurbsCurve::spec() const {
   spec.periodic = periodic_;
   spec.jumps = jumps_;
   spec.knots = written_knots(knots_, degree_, periodic_);
-  const auto count = weights_.size() - index_of(periodic_ ? degree_ : 0);
-  spec.points.assign(points_.begin(), points_.begin() + static_cast<long>(count) * dim_);
-  if (std::any_of(weights_.begin(), weights_.end(), [](double w) { return w != 1.0; })) {
-    spec.weights.assign(weights_.begin(), weights_.begin() + static_cast<long>(count));
-  }
+  const int extra = periodic_ ? degree_ : 0, written = point_count() - extra;
+  spec.points = open_rows(points_, written * dim_, extra * dim_);
+  spec.weights = written_weights(weights_, written, extra);
   return spec;
 }
 

@@ -6,28 +6,11 @@
 
 #include "span_basis.h"
 #include "spec_checks.h"
+#include "spec_layout.h"
 
 namespace knotwave::curves {
 namespace {
 std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
-
-// Each row of `row` numbers gets its first `extra` numbers again at its end.
-std::vector<double> closed_rows(const std::vector<double>& flat, int row, int extra) {
-  std::vector<double> closed;
-  for (auto start = flat.begin(); start != flat.end(); start += row) {
-    closed.insert(closed.end(), start, start + row);
-    closed.insert(closed.end(), start, start + extra);
-  }
-  return closed;
-}
-// And without them again.
-std::vector<double> open_rows(const std::vector<double>& flat, int row, int extra) {
-  std::vector<double> open;
-  for (auto start = flat.begin(); start != flat.end(); start += row) {
-    open.insert(open.end(), start, start + row - extra);
-  }
-  return open;
-}
 
 KnotSequence sequence_u(const NurbsSurface& surface) {
   return {surface.knots_u(), surface.degree_u(), surface.is_periodic_u()};
@@ -86,23 +69,15 @@ Result<NurbsSurface> NurbsSurface::create(SurfaceSpec spec) {
   surface.degree_u_ = spec.degree_u;
   surface.degree_v_ = spec.degree_v;
   surface.dim_ = spec.dim;
-  surface.count_u_ = spec.count_u;
+  const int n = spec.count_u, extra = spec.periodic_u ? spec.degree_u : 0;
+  surface.count_u_ = n + extra;
   surface.count_v_ = spec.count_v;
   surface.periodic_u_ = spec.periodic_u;
-  surface.knots_u_ = expanded_knots(spec.knots_u, spec.degree_u, spec.count_u, spec.periodic_u);
+  surface.knots_u_ = expanded_knots(spec.knots_u, spec.degree_u, n, spec.periodic_u);
   surface.knots_v_ = expanded_knots(spec.knots_v, spec.degree_v, spec.count_v, false);
-  surface.points_ = std::move(spec.points);
-  surface.weights_ = std::move(spec.weights);
-  surface.weights_.resize(index_of(spec.count_u * spec.count_v), 1.0);
-  if (spec.periodic_u) {
-    const int p = spec.degree_u, n = spec.count_u;
-    surface.points_ = closed_rows(surface.points_, n * spec.dim, p * spec.dim);
-    surface.weights_ = closed_rows(surface.weights_, n, p);
-    surface.count_u_ = n + p;
-  }
-  const double first = surface.weights_.front();
-  surface.rational_ = std::any_of(surface.weights_.begin(), surface.weights_.end(),
-                                  [first](double w) { return w != first; });
+  surface.points_ = closed_rows(std::move(spec.points), n * spec.dim, extra * spec.dim);
+  surface.weights_ = expanded_weights(std::move(spec.weights), n * spec.count_v, n, extra);
+  surface.rational_ = makes_rational(surface.weights_);
   return surface;
 }
 
@@ -116,10 +91,8 @@ SurfaceSpec NurbsSurface::spec() const {
   spec.count_u = count_u_ - extra;
   spec.count_v = count_v_;
   spec.periodic_u = periodic_u_;
-  spec.points = open_rows(points_, count_u_ * dim_, extra * dim_);
-  if (std::any_of(weights_.begin(), weights_.end(), [](double w) { return w != 1.0; })) {
-    spec.weights = open_rows(weights_, count_u_, extra);
-  }
+  spec.points = open_rows(points_, spec.count_u * dim_, extra * dim_);
+  spec.weights = written_weights(weights_, spec.count_u, extra);
   spec.knots_u = written_knots(knots_u_, degree_u_, periodic_u_);
   spec.knots_v = knots_v_;
   return spec;

@@ -40,12 +40,4 @@ std::optional<SpecFault> find_number_fault(const std::string& what, int dim,
                                            std::span<const double> points,
                                            std::span<const double> weights);
 
-/// The knots create() keeps: those given, or clamped uniform on [0, 1] (periodic: uniform), and for
-/// a periodic direction with p more on either side, shifted by a period.
-std::vector<double> expanded_knots(std::span<const double> knots, int degree, int count,
-                                   bool periodic);
-
-/// The knots as written again.
-std::vector<double> written_knots(std::span<const double> expanded, int degree, bool periodic);
-
 }  // namespace knotwave::curves

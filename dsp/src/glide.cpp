@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "moved_curve.h"
+
 namespace knotwave::dsp {
 namespace {
 
@@ -35,7 +37,9 @@ void Glide::start(const curves::CurveProgram* curve, double target, base::Sample
   if (target != target) return;
   const double t = progress(time.sample, time.fraction);
   if (t < 1) {
-    const double c = curve != nullptr ? curve->at_u(on_domain(*curve, t)) : built_in_s(t);
+    const std::span<const double> controls = std::span(last_controls_).first(control_count_);
+    const double c =
+        curve != nullptr ? curve->at_u(on_domain(*curve, t), 0, controls) : built_in_s(t);
     from_ += (target_ - from_) * c;
   } else {
     from_ = target_;
@@ -46,7 +50,7 @@ void Glide::start(const curves::CurveProgram* curve, double target, base::Sample
 }
 
 void Glide::render(const curves::CurveProgram* curve, std::int64_t first,
-                   std::span<double> out) KNOTWAVE_RT {
+                   std::span<const double* const> controls, std::span<double> out) KNOTWAVE_RT {
   std::array<double, kChunk> t;
   for (std::size_t done = 0; done < out.size(); done += kChunk) {
     const auto part = out.subspan(done, std::min(kChunk, out.size() - done));
@@ -59,7 +63,8 @@ void Glide::render(const curves::CurveProgram* curve, std::int64_t first,
     }
     if (curve != nullptr) {
       for (std::size_t i = 0; i < moving; ++i) t[i] = on_domain(*curve, t[i]);
-      curve->render(std::span<const double>(t).first(moving), part.first(moving), cursor_);
+      render_moved(*curve, std::span<const double>(t).first(moving), controls, done,
+                   part.first(moving), cursor_);
     } else {
       std::transform(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(moving), part.begin(),
                      built_in_s);
@@ -67,6 +72,9 @@ void Glide::render(const curves::CurveProgram* curve, std::int64_t first,
     for (std::size_t i = 0; i < moving; ++i) part[i] = from_ + (target_ - from_) * part[i];
     std::fill(part.begin() + static_cast<std::ptrdiff_t>(moving), part.end(), target_);
   }
+  const auto count = curve != nullptr ? static_cast<std::size_t>(curve->control_count()) : 0;
+  control_count_ = controls.size() >= count && !out.empty() ? count : 0;
+  for (std::size_t k = 0; k < control_count_; ++k) last_controls_[k] = controls[k][out.size() - 1];
 }
 
 }  // namespace knotwave::dsp

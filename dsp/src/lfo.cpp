@@ -7,6 +7,8 @@
 
 #include "knotwave/dsp/elementary_block.h"
 
+#include "moved_curve.h"
+
 namespace knotwave::dsp {
 namespace {
 
@@ -146,7 +148,7 @@ void Lfo::place_each(const LfoSpec& spec, const curves::CurveProgram& cycle, std
 
 void Lfo::render(const LfoSpec& spec, const curves::CurveProgram& cycle, std::int64_t first,
                  std::span<const double> rate_factor, std::span<const double> tempo_beats,
-                 std::span<double> out) KNOTWAVE_RT {
+                 std::span<const double* const> controls, std::span<double> out) KNOTWAVE_RT {
   if (!(spec.beats > 0)) tempo_beats = {};
   const bool is_even = rate_factor.empty() && tempo_beats.empty() && !spec.random &&
                        spec.mode != LfoSpec::Mode::one_shot;
@@ -164,7 +166,7 @@ void Lfo::render(const LfoSpec& spec, const curves::CurveProgram& cycle, std::in
       if (!tempo_beats.empty()) chunk.tempo_beats = tempo_beats.subspan(done, part.size());
       place_each(spec, cycle, here, chunk);
     }
-    cycle.render(std::span<const double>(u), part, cursor_);
+    render_moved(cycle, u, controls, done, part, cursor_);
     for (std::size_t i = 0; spec.random && i < part.size(); ++i) {
       part[i] = chunk.from[i] + chunk.step[i] * part[i];
     }

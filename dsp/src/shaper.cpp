@@ -2,6 +2,7 @@
 #include "knotwave/dsp/shaper.h"
 
 #include <algorithm>
+#include <array>
 
 #include "knotwave/base/fp_state.h"
 
@@ -48,7 +49,9 @@ Result<curves::CurveProgram> polynomial_program(const curves::NurbsCurve& curve)
 
 }  // namespace
 
-Result<ShaperProgram> ShaperProgram::create(const curves::NurbsCurve& curve) {
+Result<ShaperProgram> ShaperProgram::create(const curves::NurbsCurve& curve,
+                                            std::span<const curves::ControlRange> controls) {
+  if (!controls.empty()) return create_moving(curve, controls);
   const auto program = polynomial_program(curve);
   if (!program) return program.error();
   ShaperProgram shaper;
@@ -114,7 +117,11 @@ double ShaperProgram::piece_mean(int piece, double x0, double x1) const KNOTWAVE
   }
 }
 
-double ShaperProgram::mean(Input a, Input b) const KNOTWAVE_RT {
+double ShaperProgram::mean(Input a, Input b, std::span<const double> controls) const KNOTWAVE_RT {
+  return control_count() > 0 ? moving_mean(a, b, controls) : still_mean(a, b);
+}
+
+double ShaperProgram::still_mean(Input a, Input b) const KNOTWAVE_RT {
   if (b.x < a.x) std::swap(a, b);
   if (a.piece == b.piece) {
     if (a.piece < 0) return first_value_;
@@ -139,23 +146,28 @@ double ShaperProgram::mean(Input a, Input b) const KNOTWAVE_RT {
 
 double ShaperProgram::at(double x) const KNOTWAVE_RT {
   const Input input = locate(x, 0);
-  return mean(input, input);
+  return mean(input, input, {});
 }
 
 double ShaperProgram::mean(double x0, double x1) const KNOTWAVE_RT {
   const Input a = locate(x0, 0);
-  return mean(a, locate(x1, a.piece));
+  return mean(a, locate(x1, a.piece), {});
 }
 
-void Shaper::render(const ShaperProgram& program, std::span<const float> drive, float mix,
-                    std::span<const float> in, std::span<float> out) KNOTWAVE_RT {
+void Shaper::render(const ShaperProgram& program, std::span<const float> drive,
+                    std::span<const double* const> controls, float mix, std::span<const float> in,
+                    std::span<float> out) KNOTWAVE_RT {
+  const auto count = static_cast<std::size_t>(program.control_count());
+  const std::size_t moved = controls.size() >= count ? count : 0;
+  std::array<double, curves::kMaxControls> now{};
   const double wet = mix > 0 ? std::min(static_cast<double>(mix), 1.0) : 0.0;
   ShaperProgram::Input last = program.locate(last_, last_piece_);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double dry = conditioned(static_cast<double>(in[i]));
     const ShaperProgram::Input input =
         program.locate(static_cast<double>(drive[i]) * dry, last.piece);
-    const double shaped = program.mean(last, input);
+    for (std::size_t k = 0; k < moved; ++k) now[k] = controls[k][i];
+    const double shaped = program.mean(last, input, std::span<const double>(now).first(moved));
     out[i] = static_cast<float>(wet * shaped + (1 - wet) * (0.5 * (dry + last_dry_)));
     last = input;
     last_dry_ = dry;

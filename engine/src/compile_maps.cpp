@@ -145,27 +145,32 @@ Result<void> PatchCompiler::check_target(const MapSpec& map) const {
   }
 }
 
+bool PatchCompiler::varies(const MapSpec& map, int most_steps) const {
+  if (most_steps == 0) return true;  // a circle, which make_schedule() names
+  if (varies_by_itself(map.source)) return true;
+  if (!map.surface.empty() && varies_by_itself(map.source_v)) return true;
+  const std::vector<int> moved = moved_numbers_of(map.curve);
+  return std::any_of(moved.begin(), moved.end(), [&](int number) {
+    const int mover = moved_[static_cast<std::size_t>(number)].map;
+    return varies(spec_.maps[static_cast<std::size_t>(mover)], most_steps - 1);
+  });
+}
+
 Result<void> PatchCompiler::check_map(const MapSpec& map) const {
   if (auto ok = check_source(map.source, map.source_index); !ok) return ok;
   if (auto ok = check_source(map.source_v, map.source_v_index); !ok) return ok;
   if (auto ok = check_target(map); !ok) return ok;
-  const bool varies =
-      varies_by_itself(map.source) || (!map.surface.empty() && varies_by_itself(map.source_v));
-  if (map.target != MapTarget::envelope_time || !varies) return {};
+  if (map.target != MapTarget::envelope_time || !varies(map, kMaxMaps)) return {};
   return fail(ErrorCode::unsupported,
               "an envelope's time is read once, when a note starts; an envelope or LFO cannot move "
               "it");
 }
 
 Result<void> PatchCompiler::add_curve(const MapSpec& map, PatchProgram::MapPart& part) const {
-  auto found = curve(map.curve, "its curve");
+  auto found = moved_curve(map.curve, "its curve");
   if (!found) return found.error();
-  curves::CompileOptions options;
-  for (const int moved : moved_numbers_of(map.curve)) {
-    options.controls.push_back(moved_[static_cast<std::size_t>(moved)].range);
-    part.control_slots.push_back(kSlotControl + moved);
-  }
-  auto program = curves::compile_function(**found, options);
+  part.control_slots = found->slots;
+  auto program = curves::compile_function(*found->curve, found->options);
   if (!program) return program.error();
   part.curve = *std::move(program);
   return {};

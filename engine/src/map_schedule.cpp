@@ -35,8 +35,10 @@ class Scheduler {
       });
       take(Kind::envelope, envelope_done_,
            [&](std::size_t i) { return slots_are_ready(envelopes_[i].control_slots); });
-      take(Kind::lfo, lfo_done_,
-           [&](std::size_t i) { return slot_is_ready(kSlotLfoRate + static_cast<int>(i)); });
+      take(Kind::lfo, lfo_done_, [&](std::size_t i) {
+        return slot_is_ready(kSlotLfoRate + static_cast<int>(i)) &&
+               slots_are_ready(lfos_[i].control_slots);
+      });
       if (steps_.size() == before) return cycle();
     }
     return std::move(steps_);

@@ -27,26 +27,6 @@ Signal source_signal(MapSource source, int index, const dsp::Smoother& smoother,
   return {0, buffer.data()};
 }
 
-/// The moved numbers of a curve, at every sample. Pointers to [n] each.
-struct MovedNumbers {
-  std::array<const double*, curves::kMaxControls> values;
-  std::size_t count = 0;
-  bool all_constant = true;
-};
-MovedNumbers moved_numbers(std::span<const int> slots, std::size_t n,
-                           ModulationScratch& scratch) KNOTWAVE_RT {
-  MovedNumbers moved;
-  for (const int slot : slots) {
-    if (moved.count == moved.values.size()) break;
-    const Signal& number = scratch.slots[static_cast<std::size_t>(slot)];
-    ChunkBuffer& buffer = scratch.controls[moved.count];
-    if (number.is_constant()) std::fill_n(buffer.begin(), n, number.constant);
-    moved.values[moved.count++] = number.is_constant() ? buffer.data() : number.values;
-    moved.all_constant = moved.all_constant && number.is_constant();
-  }
-  return moved;
-}
-
 Signal through_curve(const PatchProgram::MapPart& map, const Signal& u, std::size_t n,
                      curves::CurveCursor& cursor, ModulationScratch& scratch) KNOTWAVE_RT {
   const MovedNumbers moved = moved_numbers(map.control_slots, n, scratch);
@@ -62,7 +42,7 @@ Signal through_curve(const PatchProgram::MapPart& map, const Signal& u, std::siz
   if (moved.count == 0) {
     map.curve->render(at, out, cursor);
   } else {
-    map.curve->render(at, std::span(moved.values).first(moved.count), out, cursor);
+    map.curve->render(at, moved.all(), out, cursor);
   }
   return {0, scratch.shaped.data()};
 }
@@ -73,6 +53,20 @@ void add(ModulationScratch& scratch, int slot, const Signal& value, std::size_t 
 }
 
 }  // namespace
+
+MovedNumbers moved_numbers(std::span<const int> slots, std::size_t n,
+                           ModulationScratch& scratch) KNOTWAVE_RT {
+  MovedNumbers moved;
+  for (const int slot : slots) {
+    if (moved.count == moved.values.size()) break;
+    const Signal& number = scratch.slots[static_cast<std::size_t>(slot)];
+    ChunkBuffer& buffer = scratch.controls[moved.count];
+    if (number.is_constant()) std::fill_n(buffer.begin(), n, number.constant);
+    moved.values[moved.count++] = number.is_constant() ? buffer.data() : number.values;
+    moved.all_constant = moved.all_constant && number.is_constant();
+  }
+  return moved;
+}
 
 void Modulation::start(const PatchProgram& patch, const NoteContext& note, base::SampleTime time,
                        double rate_hz, const TempoClock& tempo) KNOTWAVE_RT {
@@ -103,17 +97,33 @@ void Modulation::retrigger(const PatchProgram& patch, const NoteContext& note,
   open_gates(patch, note, time, rate_hz, tempo);
 }
 
+// What the map comes to, of the player's present values alone. Moved numbers of its curve are asked
+// for likewise; a patch in which these go round in a circle does not compile.
+double Modulation::value_at_note_on(const PatchProgram& patch,
+                                    std::size_t index) const KNOTWAVE_RT {
+  const PatchProgram::MapPart& map = patch.maps()[index];
+  double value = players_[index].source.target();
+  if (map.curve) {
+    std::array<double, curves::kMaxControls> controls{};
+    const std::size_t count = map.control_slots.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t i = 0; i < patch.maps().size(); ++i) {
+        if (patch.maps()[i].slot == map.control_slots[k]) controls[k] = value_at_note_on(patch, i);
+      }
+    }
+    value = map.curve->at_u(value, 0, std::span<const double>(controls).first(count));
+  }
+  if (map.surface) {
+    map.surface->evaluate(value, players_[index].source_v.target(), std::span(&value, 1));
+  }
+  value *= map.depth;
+  return map.is_control ? map.low + (map.high - map.low) * std::clamp(value, 0.0, 1.0) : value;
+}
+
 double Modulation::time_octaves(const PatchProgram& patch, int envelope) const KNOTWAVE_RT {
   double octaves = 0;
   for (std::size_t i = 0; i < patch.maps().size(); ++i) {
-    const PatchProgram::MapPart& map = patch.maps()[i];
-    if (map.slot != kSlotEnvelopeTime + envelope) continue;
-    double value = players_[i].source.target();
-    if (map.curve) value = map.curve->at_u(value);
-    if (map.surface) {
-      map.surface->evaluate(value, players_[i].source_v.target(), std::span(&value, 1));
-    }
-    octaves += map.depth * value;
+    if (patch.maps()[i].slot == kSlotEnvelopeTime + envelope) octaves += value_at_note_on(patch, i);
   }
   return octaves;
 }
@@ -200,7 +210,7 @@ void Modulation::render_envelope(const PatchProgram& patch, std::size_t index, s
                                  std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT {
   const PatchProgram::EnvelopePart& part = patch.envelopes()[index];
   const MovedNumbers moved = moved_numbers(part.control_slots, n, scratch);
-  envelopes_[index].render(part.program, first, std::span(moved.values).first(moved.count),
+  envelopes_[index].render(part.program, first, moved.all(),
                            std::span(scratch.envelopes[index]).first(n));
 }
 
@@ -220,7 +230,8 @@ void Modulation::render_lfo(const PatchProgram& patch, std::size_t index, const 
     }
     beats = std::span(scratch.beats).first(n);
   }
-  lfos_[index].render(part.spec, part.cycle, first, rate_factor, beats,
+  const MovedNumbers moved = moved_numbers(part.control_slots, n, scratch);
+  lfos_[index].render(part.spec, part.cycle, first, rate_factor, beats, moved.all(),
                       std::span(scratch.lfos[index]).first(n));
 }
 

@@ -25,6 +25,18 @@ struct ModulationScratch {
   ChunkBuffer source, source_v, shaped, beats;
 };
 
+/// The numbers of a curve that maps move, at every sample of a chunk: pointers to [n] each.
+struct MovedNumbers {
+  std::array<const double*, curves::kMaxControls> values;
+  std::size_t count = 0;
+  bool all_constant = true;
+
+  std::span<const double* const> all() const KNOTWAVE_RT { return std::span(values).first(count); }
+};
+/// Those in `slots`, good until the next call with this scratch. [audio]
+MovedNumbers moved_numbers(std::span<const int> slots, std::size_t n,
+                           ModulationScratch& scratch) KNOTWAVE_RT;
+
 class Modulation {
  public:
   /// Everything from rest. [audio]
@@ -53,6 +65,7 @@ class Modulation {
   };
   void open_gates(const PatchProgram& patch, const NoteContext& note, base::SampleTime time,
                   double rate_hz, const TempoClock& tempo) KNOTWAVE_RT;
+  double value_at_note_on(const PatchProgram& patch, std::size_t map) const KNOTWAVE_RT;
   double time_octaves(const PatchProgram& patch, int envelope) const KNOTWAVE_RT;
   void render_map(const PatchProgram& patch, std::size_t index, std::int64_t first, std::size_t n,
                   ModulationScratch& scratch) KNOTWAVE_RT;

@@ -70,28 +70,37 @@ Result<const curves::NurbsCurve*> PatchCompiler::curve(const std::string& name,
               role + ": no curve '" + name + "'" + base::suggestion(name, names));
 }
 
-Result<const curves::NurbsCurve*> PatchCompiler::still_curve(const std::string& name,
-                                                             const std::string& role) const {
-  if (!moved_numbers_of(name).empty()) {
-    return fail(ErrorCode::unsupported, role + ": a map moves a number of curve '" + name +
-                                            "', which only envelopes, maps and waves can follow");
+Result<PatchCompiler::MovedCurve> PatchCompiler::moved_curve(const std::string& name,
+                                                             const std::string& role,
+                                                             bool is_function) const {
+  auto found = curve(name, role);
+  if (!found) return found.error();
+  MovedCurve moved;
+  moved.curve = *found;
+  for (const int number : moved_numbers_of(name)) {
+    moved.options.controls.push_back(moved_[static_cast<std::size_t>(number)].range);
+    moved.slots.push_back(kSlotControl + number);
   }
-  return curve(name, role);
+  if (moved.slots.empty() || !is_function || moved.curve->dim() == 1) return moved;
+  return fail(
+      ErrorCode::unsupported,
+      role + ": map " +
+          std::to_string(moved_[static_cast<std::size_t>(moved_numbers_of(name)[0])].map + 1) +
+          " moves a number of curve '" + name +
+          "', whose points have a time of their own (x): y over x is worked out when the patch "
+          "is read and cannot move. A curve of one coordinate, with knots for the times, can");
 }
 
 Result<void> PatchCompiler::compile_envelopes() {
   for (const EnvelopeUse& use : spec_.envelopes) {
     const std::string role = "envelope '" + use.name + "'";
-    auto found = curve(use.curve, role);
+    auto found = moved_curve(use.curve, role);
     if (!found) return found.error();
     PatchProgram::EnvelopePart part;
     dsp::EnvelopeSpec spec = use.spec;
-    spec.compile.controls.clear();
-    for (const int moved : moved_numbers_of(use.curve)) {
-      spec.compile.controls.push_back(moved_[static_cast<std::size_t>(moved)].range);
-      part.control_slots.push_back(kSlotControl + moved);
-    }
-    auto program = dsp::EnvelopeProgram::create(**found, spec);
+    spec.compile.controls = found->options.controls;
+    part.control_slots = found->slots;
+    auto program = dsp::EnvelopeProgram::create(*found->curve, spec);
     if (!program) return in_role(program.error(), role);
     part.name = use.name;
     part.program = *std::move(program);
@@ -133,40 +142,44 @@ Result<void> PatchCompiler::add_default_amp() {
 Result<void> PatchCompiler::compile_lfos() {
   for (const LfoUse& use : spec_.lfos) {
     const std::string role = "lfo '" + use.name + "'";
-    auto found = still_curve(use.curve, role);
+    auto found = moved_curve(use.curve, role);
     if (!found) return found.error();
-    auto cycle = curves::compile_function(**found);
+    auto cycle = curves::compile_function(*found->curve, found->options);
     if (!cycle) return in_role(cycle.error(), role);
     tell(role + ": curve '" + use.curve + "', " + std::to_string(cycle->piece_count()) +
          " pieces, largest error " + number_text(cycle->max_error()));
-    program_->lfos_.push_back({use.name, use.spec, *std::move(cycle), false});
+    program_->lfos_.push_back(
+        {use.name, use.spec, *std::move(cycle), std::move(found->slots), false});
   }
   return {};
 }
 
 Result<void> PatchCompiler::compile_rest() {
   if (!spec_.shaper_curve.empty()) {
-    auto found = still_curve(spec_.shaper_curve, "shaper");
+    auto found = moved_curve(spec_.shaper_curve, "shaper");
     if (!found) return found.error();
-    auto shaper = dsp::ShaperProgram::create(**found);
+    auto shaper = dsp::ShaperProgram::create(*found->curve, found->options.controls);
     if (!shaper) return in_role(shaper.error(), "shaper");
     program_->shaper_ = *std::move(shaper);
+    program_->shaper_slots_ = std::move(found->slots);
   }
   if (spec_.crossfade_law == "linear") {
     program_->crossfade_law_ = dsp::CrossfadeLaw::linear();
   } else if (!spec_.crossfade_law.empty()) {
-    auto found = still_curve(spec_.crossfade_law, "crossfade");
+    auto found = moved_curve(spec_.crossfade_law, "crossfade", false);
     if (!found) return found.error();
-    auto law = dsp::CrossfadeLaw::create(**found);
+    auto law = dsp::CrossfadeLaw::create(*found->curve, found->options);
     if (!law) return in_role(law.error(), "crossfade");
     program_->crossfade_law_ = *std::move(law);
+    program_->crossfade_slots_ = std::move(found->slots);
   }
   if (!spec_.glide_curve.empty()) {
-    auto found = still_curve(spec_.glide_curve, "glide");
+    auto found = moved_curve(spec_.glide_curve, "glide");
     if (!found) return found.error();
-    auto glide = curves::compile_function(**found);
+    auto glide = curves::compile_function(*found->curve, found->options);
     if (!glide) return in_role(glide.error(), "glide");
     program_->glide_curve_ = *std::move(glide);
+    program_->glide_slots_ = std::move(found->slots);
   }
   return {};
 }

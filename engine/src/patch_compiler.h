@@ -56,9 +56,17 @@ class PatchCompiler {
 
   /// The curve, or unknown_name with a suggestion. `role` is how messages call it.
   Result<const curves::NurbsCurve*> curve(const std::string& name, const std::string& role) const;
-  /// The curve in a role where nothing may move it.
-  Result<const curves::NurbsCurve*> still_curve(const std::string& name,
-                                                const std::string& role) const;
+  /// The curve with the numbers that maps move, and the slots these are in. `is_function`: not
+  /// possible on a 2-D curve, which is unsupported.
+  struct MovedCurve {
+    const curves::NurbsCurve* curve = nullptr;
+    curves::CompileOptions options;
+    std::vector<int> slots;
+  };
+  Result<MovedCurve> moved_curve(const std::string& name, const std::string& role,
+                                 bool is_function = true) const;
+  /// Whether an envelope or LFO is in what the map reads, through moved numbers too.
+  bool varies(const MapSpec& map, int most_steps) const;
   std::vector<int> moved_numbers_of(const std::string& curve) const;
   int envelope_index(const std::string& name) const;
   Error about(Error error) const;

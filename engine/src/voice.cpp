@@ -143,7 +143,8 @@ void Voice::render_pitch(std::int64_t first, std::size_t n, VoiceScratch& scratc
                          Signal& key_pitch, Signal& pitch) KNOTWAVE_RT {
   key_pitch = {glide_.target(), nullptr};
   if (!glide_.is_still(first)) {
-    glide_.render(patch_->glide_curve(), first, std::span(scratch.glide).first(n));
+    const MovedNumbers moved = moved_numbers(patch_->glide_slots(), n, scratch.modulation);
+    glide_.render(patch_->glide_curve(), first, moved.all(), std::span(scratch.glide).first(n));
     key_pitch.values = scratch.glide.data();
   }
   Signal bend{bend_.target(), nullptr};

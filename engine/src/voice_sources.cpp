@@ -45,15 +45,21 @@ void Voice::render_sources(std::int64_t first, std::size_t n, const Signal& pitc
 void Voice::render_crossfade(std::size_t n, VoiceScratch& scratch) KNOTWAVE_RT {
   const Signal place = mapped(scratch.modulation.slots[kSlotCrossfade], n, scratch.work,
                               [&](double x) { return patch_->spec().crossfade_position + x; });
-  if (place.is_constant()) {
-    const dsp::GainPair gains = patch_->crossfade_law().at(place.constant);
+  const MovedNumbers moved = moved_numbers(patch_->crossfade_slots(), n, scratch.modulation);
+  if (place.is_constant() && moved.all_constant) {
+    std::array<double, curves::kMaxControls> rest;
+    for (std::size_t k = 0; k < moved.count; ++k) rest[k] = moved.values[k][0];
+    const dsp::GainPair gains = patch_->crossfade_law().at(
+        place.constant, std::span<const double>(rest).first(moved.count));
     scratch.fade_gain_a = {static_cast<double>(gains.a), nullptr};
     scratch.fade_gain_b = {static_cast<double>(gains.b), nullptr};
     return;
   }
   const std::span<float> a = std::span(scratch.gain_left).first(n);
   const std::span<float> b = std::span(scratch.gain_right).first(n);
-  patch_->crossfade_law().render(std::span(place.values, n), a, b);
+  if (place.is_constant()) std::fill_n(scratch.work.begin(), n, place.constant);
+  const std::span<const double> places(place.is_constant() ? scratch.work.data() : place.values, n);
+  patch_->crossfade_law().render(places, moved.all(), a, b);
   std::copy(a.begin(), a.end(), scratch.fade_a.begin());
   std::copy(b.begin(), b.end(), scratch.fade_b.begin());
   scratch.fade_gain_a = {0, scratch.fade_a.data()};
@@ -154,10 +160,11 @@ void Voice::shape(std::size_t n, VoiceScratch& scratch) KNOTWAVE_RT {
   const auto mix = static_cast<float>(patch_->spec().shaper_mix);
   const std::span<const float> drives = std::span(scratch.control_a).first(n);
   const std::span<float> left = std::span(scratch.mix_left).first(n);
-  shaper_left_.render(*shaper, drives, mix, left, left);
+  const MovedNumbers moved = moved_numbers(patch_->shaper_slots(), n, scratch.modulation);
+  shaper_left_.render(*shaper, drives, moved.all(), mix, left, left);
   if (patch_->is_mono()) return;
   const std::span<float> right = std::span(scratch.mix_right).first(n);
-  shaper_right_.render(*shaper, drives, mix, right, right);
+  shaper_right_.render(*shaper, drives, moved.all(), mix, right, right);
 }
 
 void Voice::filter(std::size_t n, const Signal& key_pitch, VoiceScratch& scratch) KNOTWAVE_RT {

@@ -8,8 +8,7 @@
 
 #include "knotwave/base/result.h"
 #include "knotwave/base/rt.h"
-#include "knotwave/curves/curve_program.h"
-#include "knotwave/curves/nurbs_curve.h"
+#include "knotwave/curves/compile.h"
 
 namespace knotwave::dsp {
 
@@ -35,14 +34,22 @@ class CrossfadeLaw {
   CrossfadeLaw() = default;  ///< equal power
   static CrossfadeLaw linear();
   /// [control] Errors: not_scalar (dim > 2), those of compile_parametric.
-  static Result<CrossfadeLaw> create(const curves::NurbsCurve& curve);
+  static Result<CrossfadeLaw> create(const curves::NurbsCurve& curve,
+                                     const curves::CompileOptions& options = {});
 
   Kind kind() const KNOTWAVE_RT { return kind_; }
   /// Gains at one position, clamped to 0..1, NaN = 0. [audio]
-  GainPair at(double position) const KNOTWAVE_RT;
+  /// `controls` as curves::CurveProgram::at_u has them.
+  GainPair at(double position, std::span<const double> controls = {}) const KNOTWAVE_RT;
   /// The same at every sample of a block, to the bit; a and b [position.size()]. [audio]
   void render(std::span<const double> position, std::span<float> a,
-              std::span<float> b) const KNOTWAVE_RT;
+              std::span<float> b) const KNOTWAVE_RT {
+    render(position, {}, a, b);
+  }
+  /// The same where control k of the curve moves every sample by controls[k][i]; none: at rest.
+  /// [audio]
+  void render(std::span<const double> position, std::span<const double* const> controls,
+              std::span<float> a, std::span<float> b) const KNOTWAVE_RT;
 
  private:
   Kind kind_ = Kind::equal_power;

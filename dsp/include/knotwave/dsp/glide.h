@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // From one value to another along any curve, in absolute time: portamento and other glides.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -23,7 +24,13 @@ class Glide {
              double seconds, double rate_hz) KNOTWAVE_RT;
   /// Values at samples first.., none before the last start. [audio]
   void render(const curves::CurveProgram* curve, std::int64_t first,
-              std::span<double> out) KNOTWAVE_RT;
+              std::span<double> out) KNOTWAVE_RT {
+    render(curve, first, {}, out);
+  }
+  /// The same where control k of the curve moves every sample by controls[k][i]; none: at rest. A
+  /// start on the way then leaves from where the last sample's controls had it. [audio]
+  void render(const curves::CurveProgram* curve, std::int64_t first,
+              std::span<const double* const> controls, std::span<double> out) KNOTWAVE_RT;
   /// Exactly target() from sample `first` on. [audio]
   bool is_still(std::int64_t first) const KNOTWAVE_RT { return !(progress(first, 0) < 1); }
   double target() const KNOTWAVE_RT { return target_; }
@@ -34,6 +41,8 @@ class Glide {
   double from_ = 0, target_ = 0;
   base::SampleTime start_;
   double samples_ = 0;
+  std::size_t control_count_ = 0;  ///< of last_controls_, those of the last sample
+  std::array<double, curves::kMaxControls> last_controls_{};
   curves::CurveCursor cursor_;
 };
 

@@ -41,7 +41,14 @@ class Lfo {
   /// sample. NaN in either stands still. [audio]
   void render(const LfoSpec& spec, const curves::CurveProgram& cycle, std::int64_t first,
               std::span<const double> rate_factor, std::span<const double> tempo_beats,
-              std::span<double> out) KNOTWAVE_RT;
+              std::span<double> out) KNOTWAVE_RT {
+    render(spec, cycle, first, rate_factor, tempo_beats, {}, out);
+  }
+  /// The same where control k of the cycle moves every sample by controls[k][i]; none: at rest.
+  /// [audio]
+  void render(const LfoSpec& spec, const curves::CurveProgram& cycle, std::int64_t first,
+              std::span<const double> rate_factor, std::span<const double> tempo_beats,
+              std::span<const double* const> controls, std::span<double> out) KNOTWAVE_RT;
 
  private:
   /// 128 bits: whole cycles and the phase within one, modulo 2^64 cycles.

@@ -18,15 +18,22 @@ namespace knotwave::dsp {
 /// hold. NaN counts as 0, |x| < 1e-20 as 0 and |x| > 1e6 as 1e6. Immutable.
 class ShaperProgram {
  public:
-  /// [control] Errors: those of compile_function, then of the polynomial form.
-  static Result<ShaperProgram> create(const curves::NurbsCurve& curve);
+  /// [control] Errors: those of compile_function, then of the polynomial form. With `controls` the
+  /// curve stays as it is drawn, quotients included, and its mean is taken by the 16-point rule of
+  /// Gauss and Legendre in every piece: exact for polynomials, checked within -150 dB for quotients
+  /// at the ends of the controls' ranges, where pieces are halved as needed (error_bound_missed
+  /// when 64 do not suffice).
+  static Result<ShaperProgram> create(const curves::NurbsCurve& curve,
+                                      std::span<const curves::ControlRange> controls = {});
 
-  /// Value at x. [audio]
+  /// Value at x, controls at rest. [audio]
   double at(double x) const KNOTWAVE_RT;
   /// Mean of the curve between x0 and x1 (either order, to the bit; equal gives the value). [audio]
   /// Within -130 dB of the exact integral for any |x1 - x0|, denormal to 2. Cost a search for each
-  /// end, then 4 operations a degree for each end's piece.
+  /// end, then 4 operations a degree for each end's piece; with controls 16 values of the curve for
+  /// each piece between x0 and x1.
   double mean(double x0, double x1) const KNOTWAVE_RT;
+  int control_count() const KNOTWAVE_RT { return moving_.control_count(); }
   /// Largest |program - curve|. [control]
   double max_error() const noexcept { return max_error_; }
 
@@ -38,7 +45,12 @@ class ShaperProgram {
     int piece = 0;
   };
   Input locate(double x, int hint) const KNOTWAVE_RT;
-  double mean(Input a, Input b) const KNOTWAVE_RT;
+  /// Controls as CurveProgram::at_u has them; empty unless control_count() > 0.
+  double mean(Input a, Input b, std::span<const double> controls) const KNOTWAVE_RT;
+  double still_mean(Input a, Input b) const KNOTWAVE_RT;
+  double moving_mean(Input a, Input b, std::span<const double> controls) const KNOTWAVE_RT;
+  static Result<ShaperProgram> create_moving(const curves::NurbsCurve& curve,
+                                             std::span<const curves::ControlRange> controls);
   double piece_mean(int piece, double x0, double x1) const KNOTWAVE_RT;
 
   int pieces_ = 0;
@@ -47,8 +59,9 @@ class ShaperProgram {
   double first_value_ = 0, last_value_ = 0;  ///< below and above the domain
   std::vector<double> breaks_;               ///< [pieces + 1]
   std::vector<double> inverse_widths_;       ///< [pieces]
-  std::vector<double> terms_;  ///< [pieces * (degree + 1)] coefficient k of local t over k + 1
-  std::vector<double> area_;   ///< [pieces + 1] integral of whole pieces up to each break
+  std::vector<double> terms_;    ///< [pieces * (degree + 1)] coefficient k of local t over k + 1
+  std::vector<double> area_;     ///< [pieces + 1] integral of whole pieces up to each break
+  curves::CurveProgram moving_;  ///< with controls, in place of all but the breaks
 };
 
 /// One channel's memory: the last input.
@@ -59,7 +72,14 @@ class Shaper {
   /// drive [n] multiplies the input. mix is clamped to 0..1, NaN = 0; NaN in `in` counts as 0. in
   /// and out may be the same. [audio]
   void render(const ShaperProgram& program, std::span<const float> drive, float mix,
-              std::span<const float> in, std::span<float> out) KNOTWAVE_RT;
+              std::span<const float> in, std::span<float> out) KNOTWAVE_RT {
+    render(program, drive, {}, mix, in, out);
+  }
+  /// The same where control k of the curve moves every sample by controls[k][i]; none: at rest.
+  /// [audio]
+  void render(const ShaperProgram& program, std::span<const float> drive,
+              std::span<const double* const> controls, float mix, std::span<const float> in,
+              std::span<float> out) KNOTWAVE_RT;
 
  private:
   double last_ = 0;

@@ -51,7 +51,8 @@ class PatchProgram {
     std::string name;
     dsp::LfoSpec spec;
     curves::CurveProgram cycle;
-    bool rate_moves = false;  ///< a map moves its speed
+    std::vector<int> control_slots;  ///< of the cycle
+    bool rate_moves = false;         ///< a map moves its speed
   };
   struct MapPart {
     MapSource source = MapSource::constant, source_v = MapSource::constant;
@@ -75,9 +76,9 @@ class PatchProgram {
 
   /// Compiles. [control] Errors, with the patch's file and name: those of the parts, unknown_name,
   /// cyclic_reference (an envelope, LFO or curve that moves itself, through others or not),
-  /// control_conflict (two maps onto one number), unsupported (a moved number in a curve that is an
-  /// LFO, a shaper, a glide or a crossfade law; two in one waveform; an envelope's time from an
-  /// envelope or LFO), file_not_found (a wave_file not in `cycles`).
+  /// control_conflict (two maps onto one number), unsupported (a moved number in a 2-D curve that
+  /// is a function; two in one waveform; an envelope's time from an envelope or LFO),
+  /// file_not_found (a wave_file not in `cycles`).
   static Result<std::unique_ptr<const PatchProgram>> create(
       const PatchSpec& spec, std::span<const WaveCycles> cycles = {});
 
@@ -95,10 +96,14 @@ class PatchProgram {
   std::span<const MapPart> maps() const KNOTWAVE_RT { return maps_; }
   std::span<const Step> schedule() const KNOTWAVE_RT { return schedule_; }
   const dsp::ShaperProgram* shaper() const KNOTWAVE_RT { return shaper_ ? &*shaper_ : nullptr; }
+  /// Where the numbers of a curve that maps move are, in the order of its controls.
+  std::span<const int> shaper_slots() const KNOTWAVE_RT { return shaper_slots_; }
   const dsp::CrossfadeLaw& crossfade_law() const KNOTWAVE_RT { return crossfade_law_; }
+  std::span<const int> crossfade_slots() const KNOTWAVE_RT { return crossfade_slots_; }
   const curves::CurveProgram* glide_curve() const KNOTWAVE_RT {
     return glide_curve_ ? &*glide_curve_ : nullptr;
   }
+  std::span<const int> glide_slots() const KNOTWAVE_RT { return glide_slots_; }
   double gain_lin() const KNOTWAVE_RT { return gain_lin_; }
   /// Left and right never differ before the pan of the voice.
   bool is_mono() const KNOTWAVE_RT { return is_mono_; }
@@ -122,6 +127,7 @@ class PatchProgram {
   std::optional<dsp::ShaperProgram> shaper_;
   dsp::CrossfadeLaw crossfade_law_;
   std::optional<curves::CurveProgram> glide_curve_;
+  std::vector<int> shaper_slots_, crossfade_slots_, glide_slots_;
   double gain_lin_ = 1;
   bool is_mono_ = true;
   bool velocity_law_ = true;

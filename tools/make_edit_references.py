@@ -117,9 +117,18 @@ def bent(x, b):
     return x / (x + b * (1 - x))
 
 
+def segments(rng):
+    """to_bezier and back: the same values."""
+    for degree in (1, 2, 4, 7, 15):
+        for turn, kind in enumerate(KINDS):
+            curve = random_curve(rng, degree, 2, kind, rational=turn % 2 == 0)
+            yield ("from_bezier", [], [curve],
+                   [(u, side, value(curve, u, side)) for u, side in places(rng, inside(curve))])
+
+
 def cases():
-    rng = random.Random(3)
-    yield from paces(rng)
+    yield from paces(random.Random(3))
+    yield from segments(random.Random(4))
 
 
 def text():

@@ -38,28 +38,6 @@ double at(const NurbsCurve& curve, double u, Side side = Side::right) {
   return out[0];
 }
 
-// Farthest that `edited` is over [low, high] from `curve` as evaluated and from what it is in the
-// reals, in ulp of max|P| of `curve`.
-double distance_ulp(Dice& dice, const NurbsCurve& curve, const NurbsCurve& edited, double low,
-                    double high) {
-  const double ulp = ulp_of(largest_coordinate(curve));
-  double worst = 0;
-  for (int i = 0; i < 10; ++i) {
-    const double u =
-        std::clamp(i < 2 ? random_parameter(dice, edited) : dice.between(low, high), low, high);
-    const Side side = i % 2 == 0 ? Side::left : Side::right;
-    // A part's ends are its own: what lies beyond them is not in it.
-    const bool beyond = (u == low && side == Side::left) || (u == high && side == Side::right);
-    if (beyond && !edited.is_periodic()) continue;
-    double a[curves::kMaxDim], b[curves::kMaxDim];
-    curve.evaluate(u, side, a);
-    edited.evaluate(u, side, b);
-    for (int c = 0; c < curve.dim(); ++c) worst = std::max(worst, std::abs(a[c] - b[c]) / ulp);
-    worst = std::max(worst, error_in_ulp(curve, u, side, b));
-  }
-  return worst;
-}
-
 // How many knots insert_knot() may add at u.
 int room_at(const NurbsCurve& curve, double u) {
   const std::vector<double> knots = curve.spec().knots;

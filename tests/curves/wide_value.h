@@ -13,10 +13,17 @@
 
 #include "knotwave/curves/nurbs_curve.h"
 
+#include "random_curve.h"
+
 namespace knotwave::test {
 
 /// How far `computed` [dim] is from C(u), in ulp of max|P|, the worst coordinate. u in the domain.
 double error_in_ulp(const curves::NurbsCurve& curve, double u, curves::Side side,
                     std::span<const double> computed);
+
+/// Farthest that `edited` is over [low, high] from `curve` as evaluated and from what it is in the
+/// reals, in ulp of max|P| of `curve`: 10 places, knots and their sides among them.
+double distance_ulp(Dice& dice, const curves::NurbsCurve& curve, const curves::NurbsCurve& edited,
+                    double low, double high);
 
 }  // namespace knotwave::test

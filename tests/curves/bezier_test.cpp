@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+#include "knotwave/curves/bezier.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "random_curve.h"
+#include "support/seed.h"
+#include "wide_value.h"
+
+namespace knotwave::test {
+namespace {
+
+using curves::BezierSegment;
+using curves::CurveSpec;
+using curves::NurbsCurve;
+using curves::PowerSegment;
+using curves::Side;
+using testing::ElementsAre;
+
+NurbsCurve made(CurveSpec spec) {
+  spec.name = "example";
+  auto curve = NurbsCurve::create(std::move(spec));
+  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
+  return std::move(*curve);
+}
+
+BezierSegment segment(double u0, double u1, std::vector<double> points,
+                      std::vector<double> weights = {}) {
+  weights.resize(points.size(), 1.0);
+  return {u0, u1, static_cast<int>(points.size()) - 1, 1, std::move(points), std::move(weights)};
+}
+
+double at(const NurbsCurve& curve, double u, Side side = Side::right) {
+  double out[curves::kMaxDim];
+  curve.evaluate(u, side, out);
+  return out[0];
+}
+
+double worst_of_round_trips(int count) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  for (int round = 0; round < count; ++round) {
+    const NurbsCurve curve = random_curve(dice);
+    const auto again = from_bezier(to_bezier(curve));
+    if (!again) ADD_FAILURE() << again.error().message;
+    EXPECT_THAT(again->jumps(), testing::IsEmpty());
+    worst = std::max(worst, distance_ulp(dice, curve, *again, curve.u_min(), curve.u_max()));
+  }
+  std::printf("worst of %d curves: %.2f ulp of max|P|\n", count, worst);
+  return worst;
+}
+
+TEST(FromBezier, OfToBezierIsTheCurveWithin4Ulp) {
+  EXPECT_LE(worst_of_round_trips(support::test_count(4000)), 4);
+}
+
+TEST(FromBezierStress, OfToBezierIsTheCurveWithin4Ulp) {
+  EXPECT_LE(worst_of_round_trips(support::test_count(100'000)), 4);
+}
+
+TEST(FromBezier, KnotsHaveTheDegreeAsMultiplicity) {
+  const auto curve = from_bezier(std::vector{segment(0, 1, {0, 1, 2}), segment(1, 3, {2, 5, 4})});
+  ASSERT_TRUE(curve) << curve.error().message;
+  EXPECT_THAT(curve->knots(), ElementsAre(0, 0, 0, 1, 1, 3, 3, 3));
+  EXPECT_THAT(curve->points(), ElementsAre(0, 1, 2, 5, 4));
+  EXPECT_FALSE(curve->is_rational());
+}
+
+TEST(FromBezier, EndsApartMakeAJumpUnlessTheToleranceJoinsThem) {
+  const std::vector segments{segment(0, 1, {0, 1}), segment(1, 2, {1.125, 3})};
+  const auto jump = from_bezier(segments);
+  ASSERT_TRUE(jump) << jump.error().message;
+  EXPECT_THAT(jump->jumps(), ElementsAre(1));
+  EXPECT_EQ(at(*jump, 1, Side::left), 1);
+  EXPECT_EQ(at(*jump, 1, Side::right), 1.125);
+  const auto joined = from_bezier(segments, 0.125);
+  ASSERT_TRUE(joined) << joined.error().message;
+  EXPECT_THAT(joined->jumps(), testing::IsEmpty());
+  EXPECT_EQ(at(*joined, 1, Side::right), 1);
+}
+
+TEST(FromBezier, KeepsTheJumpsOfACurve) {
+  CurveSpec spec;
+  spec.degree = 2;
+  spec.points = {0, 2, 1, -1, 3, 0};
+  spec.knots = {0, 0, 0, 0.5, 0.5, 0.5, 1, 1, 1};
+  spec.jumps = {0.5};
+  const NurbsCurve curve = made(spec);
+  const auto again = from_bezier(to_bezier(curve));
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_THAT(again->jumps(), ElementsAre(0.5));
+  EXPECT_THAT(again->points(), testing::ElementsAreArray(curve.points()));
+  EXPECT_THAT(again->knots(), testing::ElementsAreArray(curve.knots()));
+}
+
+TEST(FromBezier, NeighboursAreScaledToACommonWeight) {
+  const auto curve = from_bezier(
+      std::vector{segment(0, 1, {0, 1, 2}, {1, 2, 4}), segment(1, 2, {2, 5, 4}, {1, 3, 2})});
+  ASSERT_TRUE(curve) << curve.error().message;
+  EXPECT_THAT(curve->weights(), ElementsAre(1, 2, 4, 12, 8));
+  double expected;
+  de_casteljau(segment(1, 2, {2, 5, 4}, {1, 3, 2}), 1.5, std::span(&expected, 1));
+  EXPECT_NEAR(at(*curve, 1.5), expected, 1e-15);
+}
+
+TEST(FromBezier, NamesTheSegmentAtFault) {
+  const auto fault = [](std::vector<BezierSegment> segments, double tolerance = 0) {
+    const auto result = from_bezier(segments, tolerance);
+    EXPECT_FALSE(result);
+    return result ? Error{} : result.error();
+  };
+  const BezierSegment good = segment(0, 1, {0, 1});
+  EXPECT_EQ(fault({}).code, ErrorCode::too_few_points);
+  EXPECT_EQ(fault({good}, -1).code, ErrorCode::value_out_of_range);
+  EXPECT_EQ(fault({good, segment(1.5, 2, {0, 1})}).message,
+            "segment 1 begins at 1.5, the one before ends at 1");
+  EXPECT_EQ(fault({good, segment(1, 2, {0, 1, 2})}).message,
+            "segment 1 has degree 2, expected 1 as before");
+  EXPECT_EQ(fault({good, segment(1, 1, {0, 1})}).code, ErrorCode::empty_domain);
+  EXPECT_EQ(fault({segment(0, 1, {0, std::nan("")})}).code, ErrorCode::not_finite);
+  EXPECT_EQ(fault({segment(0, 1, {0, 1}, {1, 0})}).code, ErrorCode::weight_not_positive);
+  EXPECT_EQ(fault({segment(0, 1, {0, 1}, {1, 1e13})}).code, ErrorCode::weight_out_of_range);
+  BezierSegment odd = good;
+  odd.points.pop_back();
+  EXPECT_EQ(fault({odd}).code, ErrorCode::dimension_mismatch);
+  EXPECT_EQ(fault(std::vector<BezierSegment>(1, segment(0, 1, {0, 1e7}))).code,
+            ErrorCode::coordinate_out_of_range);
+}
+
+// (1 - t)^3 0 + 3 (1 - t)^2 t 1 + 3 (1 - t) t^2 (-1) + t^3 2 = 3 t - 9 t^2 + 8 t^3.
+TEST(PowerBasis, OfABezierSegmentByHand) {
+  CurveSpec spec;
+  spec.degree = 3;
+  spec.points = {0, 1, -1, 2};
+  const auto pieces = to_power_basis(made(spec));
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_THAT(pieces[0].numerator, ElementsAre(0, 3, -9, 8));
+  EXPECT_THAT(pieces[0].denominator, testing::IsEmpty());
+}
+
+// The quarter circle of The NURBS Book, example 1.13: (1 - t^2, 2 t) / (1 + t^2).
+TEST(PowerBasis, OfTheQuarterCircleHasTheBooksPolynomials) {
+  CurveSpec spec;
+  spec.degree = 2;
+  spec.dim = 2;
+  spec.points = {1, 0, 1, 1, 0, 1};
+  spec.weights = {1, 1, 2};
+  const auto pieces = to_power_basis(made(spec));
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_THAT(pieces[0].numerator, ElementsAre(1, 0, 0, 2, -1, 0));
+  EXPECT_THAT(pieces[0].denominator, ElementsAre(1, 0, 1));
+  const auto again = from_power_basis(pieces[0]);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_THAT(again->points, ElementsAre(1, 0, 1, 1, 0, 1));
+  EXPECT_THAT(again->weights, ElementsAre(1, 1, 2));
+}
+
+TEST(PowerBasis, EqualWeightsMakeNoDenominator) {
+  CurveSpec spec;
+  spec.degree = 1;
+  spec.points = {1, 3};
+  spec.weights = {8, 8};
+  const auto pieces = to_power_basis(made(spec));
+  EXPECT_THAT(pieces[0].numerator, ElementsAre(1, 2));
+  EXPECT_THAT(pieces[0].denominator, testing::IsEmpty());
+}
+
+// One rounding of a coefficient, at most C(p, k) 2^k max|P|, weighs C(j, k) / C(p, k) in point j:
+// together 3^p half ulp of max|P|, and as much again for what the weights do.
+TEST(PowerBasis, BackAndForthMovesPointsByAtMost3ToThePUlp) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  for (int round = 0; round < support::test_count(2000); ++round) {
+    CurveSpec spec = random_spec(dice);
+    for (double& w : spec.weights) w = dice.between(1, 2);
+    const NurbsCurve curve = made(spec);
+    const auto segments = to_bezier(curve);
+    const auto pieces = to_power_basis(curve);
+    ASSERT_EQ(pieces.size(), segments.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const auto back = from_power_basis(pieces[i]);
+      // The weights go astray as the points do: from degree 9 on they need not stay positive.
+      if (!back && curve.is_rational() && curve.degree() > 9) continue;
+      ASSERT_TRUE(back) << back.error().message;
+      EXPECT_EQ(back->u0, segments[i].u0);
+      EXPECT_EQ(back->u1, segments[i].u1);
+      const double allowed = std::pow(3.0, curve.degree()) * ulp_of(largest_coordinate(curve)) * 4;
+      for (std::size_t c = 0; c < back->points.size(); ++c) {
+        const double error = std::abs(back->points[c] - segments[i].points[c]);
+        worst = std::max(worst, error / allowed);
+      }
+    }
+  }
+  std::printf("worst %.3f of what is allowed\n", worst);
+  EXPECT_LE(worst, 1);
+}
+
+TEST(PowerBasis, ReportsWhatIsNoPiece) {
+  const auto code = [](PowerSegment piece) {
+    const auto result = from_power_basis(piece);
+    EXPECT_FALSE(result);
+    return result ? ErrorCode::malformed : result.error().code;
+  };
+  EXPECT_EQ(code({0, 1, 16, 1, std::vector<double>(17), {}}), ErrorCode::degree_out_of_range);
+  EXPECT_EQ(code({0, 1, 2, 1, {1, 2}, {}}), ErrorCode::dimension_mismatch);
+  EXPECT_EQ(code({0, 1, 1, 1, {1, 2}, {1}}), ErrorCode::dimension_mismatch);
+  EXPECT_EQ(code({1, 1, 1, 1, {1, 2}, {}}), ErrorCode::empty_domain);
+  EXPECT_EQ(code({0, 1, 1, 1, {1, 2}, {1, -1}}), ErrorCode::weight_not_positive);
+  EXPECT_EQ(code({0, 1, 1, 1, {1, INFINITY}, {}}), ErrorCode::not_finite);
+  // 1 - 4 t + 4.5 t^2 is positive everywhere, its middle Bézier coefficient is -1.
+  const auto error = from_power_basis(PowerSegment{0, 1, 2, 1, {1, 0, 0}, {1, -4, 4.5}});
+  ASSERT_FALSE(error);
+  EXPECT_EQ(error.error().message, "the denominator has the Bézier weight -1 at 1 of 2");
+}
+
+TEST(Blossom, OfEqualArgumentsIsTheCurve) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  for (int round = 0; round < support::test_count(5000); ++round) {
+    const NurbsCurve curve = random_curve(dice);
+    const double u = dice.between(curve.u_min(), curve.u_max());
+    const std::vector<double> arguments(std::size_t(curve.degree()), u);
+    double out[curves::kMaxDim + 1];
+    blossom(curve, find_span(curve.knots(), curve.degree(), u, Side::right), arguments, out);
+    for (int c = 0; c < curve.dim(); ++c) out[c] /= out[curve.dim()];
+    worst = std::max(worst, error_in_ulp(curve, u, Side::right,
+                                         std::span<const double>(out, std::size_t(curve.dim()))));
+  }
+  std::printf("worst %.2f ulp of max|P|\n", worst);
+  EXPECT_LE(worst, 2.5);  // numerator, denominator and their quotient are rounded
+}
+
+TEST(Blossom, OfConsecutiveKnotsIsAControlPoint) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < support::test_count(2000); ++round) {
+    CurveSpec spec = random_spec(dice);
+    spec.periodic = false;
+    spec.knots.clear();
+    const NurbsCurve curve = made(spec);
+    const int p = curve.degree();
+    const int span = find_span(curve.knots(), p, dice.unit(), Side::right);
+    const int i = span - p + dice.below(p + 1);
+    double out[curves::kMaxDim + 1];
+    blossom(curve, span, curve.knots().subspan(std::size_t(i + 1), std::size_t(p)), out);
+    const double w = curve.weights()[std::size_t(i)];
+    EXPECT_EQ(out[curve.dim()], w);
+    for (int c = 0; c < curve.dim(); ++c) {
+      EXPECT_EQ(out[c], w * curve.points()[std::size_t(i * curve.dim() + c)]);
+    }
+  }
+}
+
+// f(a, b) of u^2 is a b, of a cubic's u^3 f(a, b, c) is a b c, on every span and outside of it too.
+TEST(Blossom, OfAMonomialIsTheProductAndSymmetric) {
+  CurveSpec spec;
+  spec.degree = 3;
+  spec.knots = {0, 0, 0, 0, 1, 2, 2, 4, 4, 4, 4};
+  for (std::size_t i = 1; i <= 7; ++i) {
+    spec.points.push_back(spec.knots[i] * spec.knots[i + 1] * spec.knots[i + 2]);
+  }
+  const NurbsCurve cube = made(spec);
+  for (const int span : {3, 4, 6}) {
+    double out[2];
+    blossom(cube, span, std::vector<double>{-1, 5, 0.5}, out);
+    EXPECT_NEAR(out[0], -2.5, 1e-15);
+    EXPECT_EQ(out[1], 1);
+    blossom(cube, span, std::vector<double>{0.5, -1, 5}, out);
+    EXPECT_NEAR(out[0], -2.5, 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace knotwave::test

@@ -67,9 +67,9 @@ bool is_delicate(const CurveProgram& program, const NurbsCurve& curve,
 /// Where a piece is looked at, as t: places that are no simple fractions, then ever nearer to the
 /// right end, where sums of powers cancel and a small weight beside large ones shows it.
 std::vector<double> looks_of(bool delicate) {
-  std::vector<double> looks;
   const int count = delicate ? 16 : 5;
-  for (int i = 0; i < count; ++i) looks.push_back((i + 0.381966) / count);
+  std::vector<double> looks(at(count));
+  for (int i = 0; i < count; ++i) looks[at(i)] = (i + 0.381966) / count;
   const double closer = delicate ? 0x1p-1 : 0x1p-4;
   for (double gap = 0x1p-6; gap > 0x1p-50; gap *= closer) looks.push_back(1 - gap);
   for (int last = 1; delicate && last <= 16; ++last) looks.push_back(1 - last * 0x1p-53);

@@ -63,7 +63,7 @@ std::string points_text(const std::string& start, std::span<const double> points
 std::string rows_text(const std::string& key, std::span<const double> numbers, int count_u,
                       int dim) {
   std::string text = key + " = [\n";
-  const auto row = static_cast<std::size_t>(count_u * dim);
+  const auto row = static_cast<std::size_t>(count_u) * static_cast<std::size_t>(dim);
   for (std::size_t i = 0; i < numbers.size(); i += row) {
     text += points_text("  [", numbers.subspan(i, row), dim) + ",\n";
   }

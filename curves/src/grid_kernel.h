@@ -71,13 +71,13 @@ inline double sample_piece(const PieceTask& task, double u, const double* moves 
   const double t = ((u - task.shift) - task.start) * task.inverse_width;
   double y = horner(task.numerator, task.degree, t);
   for (int k = 0; k < count; ++k) {
-    const std::size_t term = static_cast<std::size_t>(k + 1) * task.term_stride;
+    const std::size_t term = (static_cast<std::size_t>(k) + 1) * task.term_stride;
     y = y + moves[k] * horner(task.numerator + term, task.degree, t);
   }
   if (task.denominator != nullptr) {
     double d = horner(task.denominator, task.degree, t);
     for (int k = 0; k < count; ++k) {
-      const std::size_t term = static_cast<std::size_t>(k + 1) * task.term_stride;
+      const std::size_t term = (static_cast<std::size_t>(k) + 1) * task.term_stride;
       d = d + moves[k] * horner(task.denominator + term, task.degree, t);
     }
     y = y / d;

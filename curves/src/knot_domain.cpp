@@ -35,11 +35,13 @@ double KnotDomain::rounded(Knot knot) const noexcept {
 Knot KnotSequence::knot_of_period(int i) const noexcept {
   const int n = static_cast<int>(expanded.size()) - 2 * degree - 1;  // knots of a period
   const int period = i < degree ? -1 : i >= degree + n ? 1 : 0;
-  return domain().knot(expanded[static_cast<std::size_t>(i - period * n)], period);
+  const int own = i - period * n;
+  return domain().knot(expanded[static_cast<std::size_t>(own)], period);
 }
 
 std::vector<Knot> KnotSequence::all() const {
   std::vector<Knot> knots;
+  knots.reserve(expanded.size());
   for (int i = 0; i < static_cast<int>(expanded.size()); ++i) knots.push_back((*this)[i]);
   return knots;
 }

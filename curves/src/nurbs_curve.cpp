@@ -79,7 +79,7 @@ void NurbsCurve::derivatives(double u, int order, Side side, std::span<double> o
   u = KnotDomain{u_min(), u_max(), periodic_}.place(u, side);
   const int span = find_span(knots_, p, u, side);
   const SpanBasis basis(KnotSequence{knots_, p, periodic_}, span, u);
-  std::fill(out.begin(), out.begin() + (order + 1) * dim_, 0.0);
+  std::fill_n(out.begin(), index_of((order + 1) * dim_), 0.0);
   evaluate(u, side, out.first(index_of(dim_)));
 
   // Derivatives of numerator and denominator; 0 above the degree. The numerator is seen from C(u),

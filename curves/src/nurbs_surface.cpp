@@ -125,7 +125,7 @@ void NurbsSurface::derivatives(double u, double v, int order,
   u = sequence_u(*this).domain().place(u, Side::right);
   v = sequence_v(*this).domain().place(v, Side::right);
   const auto at = [&](int k, int l, int c) { return index_of((k * (order + 1) + l) * dim_ + c); };
-  std::fill(out.begin(), out.begin() + (order + 1) * (order + 1) * dim_, 0.0);
+  std::fill_n(out.begin(), index_of((order + 1) * (order + 1) * dim_), 0.0);
   double origin[kMaxDim];
   evaluate(u, v, origin);
   const Partials partials(*this, u, v, origin, order);

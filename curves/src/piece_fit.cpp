@@ -152,8 +152,8 @@ void FittedPieces::lay_out(ProgramParts& parts) const {
   parts.breaks = breaks;
   parts.coefficients.clear();
   for (int r = 0; r < rows; ++r) {
-    const auto row = coefficients.begin() + r * kNodes;
-    parts.coefficients.insert(parts.coefficients.end(), row, row + parts.degree + 1);
+    const auto row = std::span(coefficients).subspan(at(r * kNodes), at(parts.degree + 1));
+    parts.coefficients.insert(parts.coefficients.end(), row.begin(), row.end());
   }
   parts.max_error = max_error;
 }

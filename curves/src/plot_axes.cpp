@@ -67,11 +67,11 @@ std::vector<SpanSamples> sample_spans(const NurbsCurve& curve, int steps) {
   for (int i = curve.degree(); i < curve.point_count(); ++i) {
     SpanSamples span;
     span.u0 = knots[static_cast<std::size_t>(i)];
-    span.u1 = knots[static_cast<std::size_t>(i + 1)];
+    span.u1 = knots[static_cast<std::size_t>(i) + 1];
     if (!(span.u0 < span.u1)) continue;
     const int count =
         std::max(24, static_cast<int>(std::ceil(steps * (span.u1 - span.u0) / whole)));
-    span.values.resize(static_cast<std::size_t>(count + 1) * dim);
+    span.values.resize((static_cast<std::size_t>(count) + 1) * dim);
     for (int k = 0; k <= count; ++k) {
       const double u = k == count ? span.u1 : span.u0 + (span.u1 - span.u0) * k / count;
       span.u.push_back(u);

@@ -48,7 +48,7 @@ class Pixels {
   std::vector<std::uint8_t> bytes() const {
     std::vector<std::uint8_t> out(rgb_.size());
     std::transform(rgb_.begin(), rgb_.end(), out.begin(),
-                   [](double v) { return static_cast<std::uint8_t>(v + 0.5); });
+                   [](double v) { return static_cast<std::uint8_t>(std::floor(v + 0.5)); });
     return out;
   }
 

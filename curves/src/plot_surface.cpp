@@ -198,25 +198,26 @@ class SurfacePicture {
             mix(kStops[i].blue, kStops[i + 1].blue), 1};
   }
 
+  const Place& corner(int i, int j) const {
+    return grid_[static_cast<std::size_t>(j) * (kAcross + 1) + static_cast<std::size_t>(i)];
+  }
+
   void draw_tiles() {
     struct Tile {
       double depth;
       int i, j;
     };
     std::vector<Tile> tiles;
-    const auto at = [&](int i, int j) -> const Place& {
-      return grid_[static_cast<std::size_t>(j * (kAcross + 1) + i)];
-    };
     for (int j = 0; j < kDeep; ++j) {
       for (int i = 0; i < kAcross; ++i) {
-        tiles.push_back({depth(at(i, j)) + depth(at(i + 1, j + 1)), i, j});
+        tiles.push_back({depth(corner(i, j)) + depth(corner(i + 1, j + 1)), i, j});
       }
     }
     std::stable_sort(tiles.begin(), tiles.end(),
                      [](const Tile& a, const Tile& b) { return a.depth > b.depth; });
     for (const Tile& tile : tiles) {
-      const Place &a = at(tile.i, tile.j), &b = at(tile.i + 1, tile.j),
-                  &c = at(tile.i + 1, tile.j + 1), &d = at(tile.i, tile.j + 1);
+      const Place &a = corner(tile.i, tile.j), &b = corner(tile.i + 1, tile.j),
+                  &c = corner(tile.i + 1, tile.j + 1), &d = corner(tile.i, tile.j + 1);
       const double height = 0.5 + 0.25 * (unit(a).z + unit(b).z + unit(c).z + unit(d).z);
       const Color fill = shade(a, b, d, height);
       const std::vector<Point> corners = {project(a), project(b), project(c), project(d)};
@@ -235,7 +236,7 @@ class SurfacePicture {
     for (const int j : {kDeep, 0}) {
       std::vector<Point> row;
       for (int i = 0; i <= kAcross; ++i) {
-        row.push_back(project(grid_[static_cast<std::size_t>(j * (kAcross + 1) + i)]));
+        row.push_back(project(corner(i, j)));
       }
       if (j == 0) scene_.line(std::move(row), kInk, 2);
     }

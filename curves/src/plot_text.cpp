@@ -26,7 +26,9 @@ std::string utf8(unsigned code) {
 class Dots {
  public:
   Dots(int columns, int rows)
-      : columns_(columns), rows_(rows), cells_(static_cast<std::size_t>(columns * rows), 0) {}
+      : columns_(columns),
+        rows_(rows),
+        cells_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0) {}
 
   void line(Point a, Point b) {
     const int steps = std::max(
@@ -41,7 +43,7 @@ class Dots {
   std::string row(int y) const {
     std::string text;
     for (int x = 0; x < columns_; ++x) {
-      const unsigned cell = cells_[static_cast<std::size_t>(y * columns_ + x)];
+      const unsigned cell = cells_[index_of(x, y)];
       text += cell == 0 ? " " : utf8(0x2800 + cell);
     }
     return text;
@@ -51,7 +53,12 @@ class Dots {
   void dot(int x, int y) {
     if (x < 0 || y < 0 || x >= 2 * columns_ || y >= 4 * rows_) return;
     constexpr unsigned kBits[4][2] = {{1, 8}, {2, 16}, {4, 32}, {64, 128}};
-    cells_[static_cast<std::size_t>(y / 4 * columns_ + x / 2)] |= kBits[y % 4][x % 2];
+    cells_[index_of(x / 2, y / 4)] |= kBits[y % 4][x % 2];
+  }
+
+  std::size_t index_of(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
   }
 
   int columns_, rows_;
@@ -142,9 +149,10 @@ std::string plot_text(const NurbsSurface& surface, int columns, int rows) {
                      short_text(*top) + ", v up, u across\n";
   for (int y = 0; y < high; ++y) {
     const double v = y == 0 ? surface.v_max() : surface.v_min();
+    const std::size_t row_start = static_cast<std::size_t>(y) * static_cast<std::size_t>(inner);
     text += padded(y == 0 || y == high - 1 ? short_text(v) : "", kMargin - 1) + " │";
     for (int x = 0; x < inner; ++x) {
-      const double share = (values[static_cast<std::size_t>(y * inner + x)] - *low) / size;
+      const double share = (values[row_start + static_cast<std::size_t>(x)] - *low) / size;
       text += shades[std::min(4, static_cast<int>(share * 5))];
     }
     text += "\n";

@@ -15,7 +15,7 @@ double binomial(int n, int k) {
 
 /// Bernstein coefficients of a power-basis row: they bound it on t in [0, 1].
 std::vector<double> to_bernstein(const double* row, int degree) {
-  std::vector<double> b(static_cast<std::size_t>(degree + 1), 0.0);
+  std::vector<double> b(static_cast<std::size_t>(degree) + 1, 0.0);
   for (int j = 0; j <= degree; ++j) {
     for (int k = 0; k <= j; ++k) {
       b[static_cast<std::size_t>(j)] += binomial(j, k) / binomial(degree, k) * row[k];

@@ -20,9 +20,9 @@ struct ProgramParts {
   std::vector<double> low, high;                 ///< [dim]
   std::vector<double> control_rest, control_low, control_high;
 
-  std::size_t rows() const { return static_cast<std::size_t>(dim + (rational ? 1 : 0)); }
+  std::size_t rows() const { return static_cast<std::size_t>(dim) + (rational ? 1U : 0U); }
   std::size_t terms() const { return 1 + control_rest.size(); }
-  std::size_t powers() const { return static_cast<std::size_t>(degree + 1); }
+  std::size_t powers() const { return static_cast<std::size_t>(degree) + 1; }
   std::size_t piece_size() const { return terms() * rows() * powers(); }
   std::size_t pieces() const { return breaks.size() - 1; }
 };

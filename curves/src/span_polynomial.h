@@ -20,7 +20,7 @@ struct SpanPolynomial {
   std::vector<DoubleDouble> rows;  ///< [(dim + 1) * (degree + 1)], row dim is the weight
 
   std::span<const DoubleDouble> row(int index) const {
-    const std::size_t powers = static_cast<std::size_t>(degree + 1);
+    const std::size_t powers = static_cast<std::size_t>(degree) + 1;
     return std::span<const DoubleDouble>(rows).subspan(static_cast<std::size_t>(index) * powers,
                                                        powers);
   }

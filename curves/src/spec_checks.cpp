@@ -231,7 +231,7 @@ Fault find_fault(const SurfaceSpec& spec) {
         Part::points, -1, ErrorCode::too_many_points, what,
         count_of(total, "point") + ", at most " + std::to_string(kMaxPoints) + " are possible");
   }
-  const auto expected = static_cast<std::size_t>(total * spec.dim);
+  const auto expected = static_cast<std::size_t>(total) * index_of(spec.dim);
   if (spec.points.size() != expected) {
     return fault(Part::points, -1, ErrorCode::dimension_mismatch, what,
                  count_of(static_cast<long long>(spec.points.size()), "number") + ", " +

@@ -211,7 +211,7 @@ TEST(Compile, ControlsOnRandomCurvesAreTheCurvesWithThoseNumbers) {
         const int c = draw.whole(0, spec.dim - 1);
         options.controls.push_back({Kind::coordinate, point, c, -2, 2});
         values.push_back(draw.between(-2, 2));
-        spec.points[std::size_t(point * spec.dim + c)] = values.back();
+        spec.points[std::size_t(point) * std::size_t(spec.dim) + std::size_t(c)] = values.back();
       }
     }
     const auto program = compile_parametric(curve, options);

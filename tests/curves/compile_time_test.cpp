@@ -111,8 +111,8 @@ TEST(CompileTime, MeetsMayasTable) {
 /// y at time x of a cubic by halving in long double: nothing in common with the pieces.
 double halved(std::span<const double> p, double x) {
   const auto blend = [&](int c, long double t) {
-    long double row[4] = {p[std::size_t(c)], p[std::size_t(2 + c)], p[std::size_t(4 + c)],
-                          p[std::size_t(6 + c)]};
+    long double row[4] = {p[std::size_t(c)], p[2 + std::size_t(c)], p[4 + std::size_t(c)],
+                          p[6 + std::size_t(c)]};
     for (int level = 3; level > 0; --level) {
       for (int i = 0; i < level; ++i) row[i] += t * (row[i + 1] - row[i]);
     }

@@ -80,7 +80,7 @@ class RandomSpecs {
 
  private:
   int integer(int low, int high) {
-    return low + static_cast<int>(engine_() % static_cast<std::uint64_t>(high - low + 1));
+    return low + static_cast<int>(engine_() % (static_cast<std::uint64_t>(high - low) + 1));
   }
   double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
   std::vector<double> numbers(int count) {

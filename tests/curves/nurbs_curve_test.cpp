@@ -21,6 +21,8 @@ using curves::NurbsCurve;
 using curves::Side;
 using testing::ElementsAre;
 
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+
 NurbsCurve made(CurveSpec spec) {
   auto curve = NurbsCurve::create(std::move(spec));
   EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
@@ -47,7 +49,7 @@ std::vector<double> at(const NurbsCurve& curve, double u, Side side = Side::righ
 
 std::vector<double> derivatives_at(const NurbsCurve& curve, double u, int order,
                                    Side side = Side::right) {
-  std::vector<double> out(std::size_t((order + 1) * curve.dim()));
+  std::vector<double> out(index_of((order + 1) * curve.dim()));
   curve.derivatives(u, order, side, out);
   return out;
 }
@@ -297,7 +299,7 @@ TEST(NurbsCurve, StaysInTheHullOfThePointsOfItsSpan) {
     for (int c = 0; c < curve.dim(); ++c) {
       double low = 1e9, high = -1e9;
       for (int i = 0; i < curve.point_count(); ++i) {
-        const double x = curve.points()[std::size_t(i * curve.dim() + c)];
+        const double x = curve.points()[index_of(i * curve.dim() + c)];
         low = std::min(low, x);
         high = std::max(high, x);
       }

@@ -19,6 +19,8 @@ using curves::NurbsSurface;
 using curves::Side;
 using curves::SurfaceSpec;
 
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+
 SurfaceSpec random_surface_spec(Dice& dice) {
   SurfaceSpec spec;
   spec.name = "random";
@@ -119,22 +121,22 @@ TEST(NurbsSurface, PartialsAreThoseOfTheIsoCurves) {
     const double u = dice.between(surface.u_min(), surface.u_max());
     const double v = dice.between(0.1, 0.9);
     const int order = 3, dim = surface.dim();
-    std::vector<double> all(std::size_t(16 * dim)), along(std::size_t(4 * dim));
+    std::vector<double> all(index_of(16 * dim)), along(index_of(4 * dim));
     surface.derivatives(u, v, order, all);
-    const auto of = [&](int k, int l, int c) { return all[std::size_t((k * 4 + l) * dim + c)]; };
+    const auto of = [&](int k, int l, int c) { return all[index_of((k * 4 + l) * dim + c)]; };
     const auto near = [](double a, double b, double scale) {
       EXPECT_NEAR(a, b, 1e-12 * std::max(std::abs(b), scale));
     };
     surface.iso_curve_at_v(v).derivatives(u, order, Side::right, along);
     for (int k = 0; k <= order; ++k) {
       for (int c = 0; c < dim; ++c) {
-        near(of(k, 0, c), along[std::size_t(k * dim + c)], std::pow(100, k));
+        near(of(k, 0, c), along[index_of(k * dim + c)], std::pow(100, k));
       }
     }
     surface.iso_curve_at_u(u).derivatives(v, order, Side::right, along);
     for (int l = 0; l <= order; ++l) {
       for (int c = 0; c < dim; ++c) {
-        near(of(0, l, c), along[std::size_t(l * dim + c)], std::pow(100, l));
+        near(of(0, l, c), along[index_of(l * dim + c)], std::pow(100, l));
       }
     }
     EXPECT_EQ(of(2, 2, 0), 0);  // beyond k + l <= order
@@ -148,18 +150,18 @@ TEST(NurbsSurface, MixedPartialIsTheSlopeOfTheSlope) {
     spec.knots_u.clear();
     spec.degree_v = std::max(spec.degree_v, 2);
     spec.count_v = spec.degree_v + 1;  // one span along v: differences meet no knot
-    spec.points.resize(std::size_t(spec.count_u * spec.count_v * spec.dim), 0.5);
+    spec.points.resize(index_of(spec.count_u * spec.count_v * spec.dim), 0.5);
     if (!spec.weights.empty()) {
-      spec.weights.resize(std::size_t(spec.count_u * spec.count_v), 1.0);
+      spec.weights.resize(index_of(spec.count_u * spec.count_v), 1.0);
     }
     const NurbsSurface surface = made(spec);
     const double u = dice.between(0.01, 0.99), v = dice.between(0.1, 0.9), h = 1e-5;
-    std::vector<double> here(std::size_t(9 * spec.dim)), up(here), down(here);
+    std::vector<double> here(index_of(9 * spec.dim)), up(here), down(here);
     surface.derivatives(u, v, 2, here);
     surface.derivatives(u, v + h, 2, up);
     surface.derivatives(u, v - h, 2, down);
     for (int c = 0; c < spec.dim; ++c) {
-      const auto u_slope = std::size_t(3 * spec.dim + c), mixed = std::size_t(4 * spec.dim + c);
+      const auto u_slope = index_of(3 * spec.dim + c), mixed = index_of(4 * spec.dim + c);
       EXPECT_NEAR(here[mixed], (up[u_slope] - down[u_slope]) / (2 * h), 1e-4);
     }
   }

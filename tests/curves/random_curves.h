@@ -78,7 +78,7 @@ inline NurbsCurve random_curve(Draws& draw, const RandomCurveOptions& options = 
     for (int i = 0; i <= n + spec.degree; ++i, u += draw.between(0.1, 1)) spec.knots.push_back(u);
     return made(std::move(spec));
   }
-  spec.knots.assign(static_cast<std::size_t>(spec.degree + 1), u);
+  spec.knots.assign(static_cast<std::size_t>(spec.degree) + 1, u);
   for (int i = 0; i < inner; ++i) {
     // Now and then the same knot again, never more than `degree` times.
     const auto same = std::count(spec.knots.begin() + spec.degree + 1, spec.knots.end(), u);
@@ -86,7 +86,7 @@ inline NurbsCurve random_curve(Draws& draw, const RandomCurveOptions& options = 
     spec.knots.push_back(u);
   }
   u += draw.between(0.05, 1);
-  spec.knots.insert(spec.knots.end(), static_cast<std::size_t>(spec.degree + 1), u);
+  spec.knots.insert(spec.knots.end(), static_cast<std::size_t>(spec.degree) + 1, u);
   return made(std::move(spec));
 }
 

@@ -54,7 +54,7 @@ double at(const NurbsCurve& curve, double u, Side side = Side::right) {
 // One Bézier segment of any degree, weights and domain: its knots are ends, which never round.
 NurbsCurve random_segment(Dice& dice) {
   CurveSpec spec = random_spec(dice);
-  const auto count = std::size_t(spec.degree + 1);
+  const auto count = std::size_t(spec.degree) + 1;
   spec.periodic = false;
   spec.knots.clear();
   spec.points.resize(count * std::size_t(spec.dim));

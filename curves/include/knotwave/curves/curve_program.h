@@ -80,7 +80,7 @@ class CurveProgram {
   friend class ProgramBuilder;  // src/program_builder.h, what compile() fills it with
   friend class PieceWalk;       // src/piece_walk.h, u to pieces
 
-  std::size_t rows() const KNOTWAVE_RT { return std::size_t(dim_ + (rational_ ? 1 : 0)); }
+  std::size_t rows() const KNOTWAVE_RT { return std::size_t(dim_) + (rational_ ? 1U : 0U); }
 
   // Layout: coefficients_[((piece * (1 + controls) + term) * (dim + rational) + row) * (degree+1)
   // + power]; row dim is the denominator. Term 0 is the rest curve, term k + 1 what control k adds

@@ -18,12 +18,16 @@ std::string warning_text(const std::string& file, const io::SongWarning& warning
 }
 
 /// The engine knows cycles by their file, so a file is cut in one way only.
-Error two_frames(const engine::PatchSpec& patch, const engine::WaveCycles& known, int frame) {
+Error two_frames(const engine::PatchSpec& patch, const std::string& oscillator,
+                 const engine::WaveCycles& known, int frame) {
   Error error = fail(ErrorCode::value_out_of_range,
                      "'" + known.file + "' is cut into cycles of " + std::to_string(known.frame) +
                          " frames elsewhere, and of " + std::to_string(frame) +
                          " here (wave_frame): use a copy of the file");
+  const engine::Place place = patch.place_of("oscillators." + oscillator + ".wave_frame");
   error.source = patch.source_name;
+  error.line = place.line;
+  error.column = place.column;
   return error;
 }
 
@@ -39,7 +43,8 @@ Result<std::vector<engine::WaveCycles>> read_waves(const engine::BankSpec& spec,
       const auto known = std::find_if(waves.begin(), waves.end(),
                                       [&](const auto& wave) { return wave.file == file; });
       if (known != waves.end()) {
-        if (frame > 0 && frame != known->frame) return two_frames(patch, *known, frame);
+        if (frame > 0 && frame != known->frame)
+          return two_frames(patch, oscillator.name, *known, frame);
         continue;
       }
       auto cycles = io::read_cycles(file, frame);

@@ -2,7 +2,9 @@
 // Maps of a patch: what they read, which numbers of curves they move, where they add.
 #include <algorithm>
 #include <array>
+#include <utility>
 
+#include "knotwave/base/document.h"
 #include "knotwave/base/suggest.h"
 
 #include "map_schedule.h"
@@ -26,9 +28,35 @@ Result<void> check_index(const char* what, int index, std::size_t count) {
                                                  std::to_string(count));
 }
 
-std::string map_name(int number) { return "map " + std::to_string(number + 1); }
-
 }  // namespace
+
+// Messages count maps from 1, paths from 0.
+PatchCompiler::Part PatchCompiler::map_part(int number, const char* key) const {
+  return {"map " + std::to_string(number + 1), "maps." + std::to_string(number) + key};
+}
+
+Result<void> PatchCompiler::check_range(const MovedNumber& moved) const {
+  const curves::NurbsCurve* found = spec_.curves.find_curve(moved.curve);
+  const curves::CurveSpec written = found->spec();
+  const auto point = static_cast<std::size_t>(moved.range.point);
+  const auto dim = static_cast<std::size_t>(written.dim);
+  const auto coordinate = static_cast<std::size_t>(moved.range.coordinate);
+  if (moved.range.point < 0 || moved.range.coordinate < 0 || coordinate >= dim ||
+      (point + 1) * dim > written.points.size())
+    return {};  // compiling the curve says so
+  const bool is_weight = moved.range.kind == curves::ControlRange::Kind::weight;
+  const double rest = !is_weight                ? written.points[point * dim + coordinate]
+                      : written.weights.empty() ? 1
+                                                : written.weights[point];
+  if (rest >= moved.range.low && rest <= moved.range.high) return {};
+  return about(
+      fail(ErrorCode::value_out_of_range,
+           "low (" + base::number_text(moved.range.low) + ") to high (" +
+               base::number_text(moved.range.high) + ") leaves out " + base::number_text(rest) +
+               ", which " + (is_weight ? "weight " : "point ") + std::to_string(moved.range.point) +
+               " of curve '" + moved.curve + "' has in the file"),
+      map_part(moved.map, rest < moved.range.low ? ".low" : ".high"));
+}
 
 Result<void> PatchCompiler::collect_moved_numbers() {
   for (std::size_t i = 0; i < spec_.maps.size(); ++i) {
@@ -44,17 +72,19 @@ Result<void> PatchCompiler::collect_moved_numbers() {
     moved.range.coordinate = map.target == MapTarget::curve_weight ? 0 : map.target_coordinate;
     moved.range.low = map.low;
     moved.range.high = map.high;
-    if (auto found = curve(moved.curve, map_name(static_cast<int>(i))); !found)
-      return found.error();
+    const Part part = map_part(moved.map, ".to");
+    if (auto found = curve(moved.curve, part); !found) return found.error();
+    if (auto ok = check_range(moved); !ok) return ok;
     for (const MovedNumber& other : moved_) {
       if (other.curve != moved.curve || other.range.kind != moved.range.kind ||
           other.range.point != moved.range.point ||
           other.range.coordinate != moved.range.coordinate)
         continue;
-      return fail(ErrorCode::control_conflict,
-                  map_name(other.map) + " and " + map_name(static_cast<int>(i)) +
-                      " move the same number of curve '" + moved.curve + "' (point " +
-                      std::to_string(moved.range.point) + ")");
+      return placed(
+          fail(ErrorCode::control_conflict,
+               map_part(other.map).name + " and " + part.name + " move the same number of curve '" +
+                   moved.curve + "' (point " + std::to_string(moved.range.point) + ")"),
+          part.path);
     }
     moved_.push_back(std::move(moved));
   }
@@ -73,7 +103,7 @@ Result<void> PatchCompiler::compile_maps() {
   for (std::size_t i = 0; i < spec_.maps.size(); ++i) {
     if (!spec_.maps[i].enabled) continue;
     if (auto done = compile_map(spec_.maps[i], i); !done)
-      return in_role(done.error(), map_name(static_cast<int>(i)));
+      return about(done.error(), map_part(static_cast<int>(i)));
   }
   drop_overridden_maps();
   return {};
@@ -100,16 +130,19 @@ void PatchCompiler::drop_overridden_maps() {
     if (first < 0 && map_origins_[i].is_rational) first = map_origins_[i].number;
   }
   std::vector<PatchProgram::MapPart> kept;
+  std::vector<MapOrigin> kept_origins;
   for (std::size_t i = 0; i < program_->maps_.size(); ++i) {
     const int by = rational_map[static_cast<std::size_t>(program_->maps_[i].slot)];
     if (by < 0 || map_origins_[i].is_rational) {
       kept.push_back(std::move(program_->maps_[i]));
+      kept_origins.push_back(map_origins_[i]);
       continue;
     }
-    tell(map_name(map_origins_[i].number) + " is overridden: " + map_name(by) +
+    tell(map_part(map_origins_[i].number).name + " is overridden: " + map_part(by).name +
          " moves the same target by a rational curve or surface");
   }
   program_->maps_ = std::move(kept);
+  map_origins_ = std::move(kept_origins);
 }
 
 Result<void> PatchCompiler::check_source(MapSource source, int index) const {
@@ -156,22 +189,28 @@ bool PatchCompiler::varies(const MapSpec& map, int most_steps) const {
   });
 }
 
-Result<void> PatchCompiler::check_map(const MapSpec& map) const {
-  if (auto ok = check_source(map.source, map.source_index); !ok) return ok;
-  if (auto ok = check_source(map.source_v, map.source_v_index); !ok) return ok;
-  if (auto ok = check_target(map); !ok) return ok;
+Result<void> PatchCompiler::check_map(const MapSpec& map, std::size_t number) const {
+  const std::string path = "maps." + std::to_string(number);
+  for (const auto& [source, index] :
+       {std::pair(map.source, map.source_index), std::pair(map.source_v, map.source_v_index)}) {
+    if (auto ok = check_source(source, index); !ok) return placed(ok.error(), path + ".from");
+  }
+  if (auto ok = check_target(map); !ok) return placed(ok.error(), path + ".to");
   if (map.target != MapTarget::envelope_time || !varies(map, kMaxMaps)) return {};
-  return fail(ErrorCode::unsupported,
-              "an envelope's time is read once, when a note starts; an envelope or LFO cannot move "
-              "it");
+  return placed(fail(ErrorCode::unsupported,
+                     "an envelope's time is read once, when a note starts; an envelope or LFO "
+                     "cannot move it"),
+                path + ".from");
 }
 
-Result<void> PatchCompiler::add_curve(const MapSpec& map, PatchProgram::MapPart& part) const {
-  auto found = moved_curve(map.curve, "its curve");
+Result<void> PatchCompiler::add_curve(const MapSpec& map, std::size_t number,
+                                      PatchProgram::MapPart& part) const {
+  const std::string path = "maps." + std::to_string(number) + ".curve";
+  auto found = moved_curve(map.curve, {"its curve", path});
   if (!found) return found.error();
   part.control_slots = found->slots;
   auto program = curves::compile_function(*found->curve, found->options);
-  if (!program) return program.error();
+  if (!program) return placed(program.error(), path);
   part.curve = *std::move(program);
   return {};
 }
@@ -195,7 +234,7 @@ Result<void> PatchCompiler::add_surface(const MapSpec& map, PatchProgram::MapPar
 }
 
 Result<void> PatchCompiler::compile_map(const MapSpec& map, std::size_t number) {
-  if (auto ok = check_map(map); !ok) return ok;
+  if (auto ok = check_map(map, number); !ok) return ok;
   PatchProgram::MapPart part;
   part.source = map.source;
   part.source_index = map.source_index;
@@ -212,9 +251,10 @@ Result<void> PatchCompiler::compile_map(const MapSpec& map, std::size_t number) 
   }
   part.slot = slot_of(map.target, index);
   if (!map.curve.empty()) {
-    if (auto done = add_curve(map, part); !done) return done;
+    if (auto done = add_curve(map, number, part); !done) return done;
   } else if (!map.surface.empty()) {
-    if (auto done = add_surface(map, part); !done) return done;
+    if (auto done = add_surface(map, part); !done)
+      return placed(done.error(), "maps." + std::to_string(number) + ".surface");
   }
   program_->maps_.push_back(std::move(part));
   map_origins_.push_back({static_cast<int>(number), is_rational(map)});
@@ -222,10 +262,29 @@ Result<void> PatchCompiler::compile_map(const MapSpec& map, std::size_t number) 
 }
 
 Result<void> PatchCompiler::order_steps() {
-  auto steps = make_schedule(program_->maps_, program_->envelopes_, program_->lfos_);
-  if (!steps) return steps.error();
-  program_->schedule_ = *std::move(steps);
-  return {};
+  Schedule schedule = make_schedule(program_->maps_, program_->envelopes_, program_->lfos_);
+  program_->schedule_ = std::move(schedule.steps);
+  if (schedule.stuck.empty()) return {};
+  std::string names;
+  for (const PatchProgram::Step& step : schedule.stuck) {
+    const auto index = static_cast<std::size_t>(step.index);
+    if (step.kind == PatchProgram::Step::Kind::envelope) {
+      names += " envelope '" + program_->envelopes_[index].name + "'";
+    } else if (step.kind == PatchProgram::Step::Kind::lfo) {
+      names += " lfo '" + program_->lfos_[index].name + "'";
+    }
+  }
+  if (names.empty()) names = " curves of maps";
+  // A circle is closed by a map onto an LFO's speed or a number of a curve.
+  const auto closing = std::find_if(
+      schedule.stuck.begin(), schedule.stuck.end(), [&](const PatchProgram::Step& step) {
+        if (step.kind != PatchProgram::Step::Kind::map) return false;
+        const int slot = program_->maps_[static_cast<std::size_t>(step.index)].slot;
+        return slot >= kSlotControl || (slot >= kSlotLfoRate && slot < kSlotEnvelopeTime);
+      });
+  const auto map = static_cast<std::size_t>(closing->index);
+  return placed(fail(ErrorCode::cyclic_reference, "maps make these depend on themselves:" + names),
+                map_part(map_origins_[map].number, ".to").path);
 }
 
 }  // namespace knotwave::engine

@@ -16,7 +16,9 @@ constexpr double kSilentDb = -96;
 
 Result<void> PatchCompiler::compile_oscillators() {
   for (const OscillatorSpec& oscillator : spec_.oscillators) {
-    const std::string role = "oscillator '" + oscillator.name + "'";
+    const std::string path = "oscillators." + oscillator.name;
+    const std::string name = "oscillator '" + oscillator.name + "'";
+    const Part wave{name, path + (oscillator.wave.empty() ? ".wave_file" : ".wave")};
     PatchProgram::Source source;
     source.gain_lin = oscillator.level_db <= kSilentDb ? 0 : base::db_to_gain(oscillator.level_db);
     source.semitones = oscillator.transpose_semitones + oscillator.detune_cents / 100 +
@@ -27,25 +29,27 @@ Result<void> PatchCompiler::compile_oscillators() {
     source.phase_cycles = oscillator.phase_cycles;
     source.random_phase = oscillator.random_phase;
     source.pan = oscillator.pan;
-    if (auto done = link_envelope(oscillator.envelope, role, source); !done) return done.error();
-    if (auto done = compile_wave(oscillator, source); !done) return in_role(done.error(), role);
+    if (auto done = link_envelope(oscillator.envelope, {name, path + ".envelope"}, source); !done)
+      return done.error();
+    if (auto done = compile_wave(oscillator, source); !done) return about(done.error(), wave);
     program_->oscillators_.push_back(std::move(source));
   }
   PatchProgram::Source& noise = program_->noise_;
   noise.gain_lin = spec_.noise_db <= kNoiseOffDb ? 0 : base::db_to_gain(spec_.noise_db);
   noise.pan = spec_.noise_pan;
-  return link_envelope(spec_.noise_envelope, "noise", noise);
+  return link_envelope(spec_.noise_envelope, {"noise", "noise.envelope"}, noise);
 }
 
-Result<void> PatchCompiler::link_envelope(const std::string& name, const std::string& role,
+Result<void> PatchCompiler::link_envelope(const std::string& name, const Part& part,
                                           PatchProgram::Source& source) const {
   if (name.empty()) return {};
   source.envelope = envelope_index(name);
   if (source.envelope >= 0) return {};
   std::vector<std::string_view> names;
   for (const EnvelopeUse& use : spec_.envelopes) names.push_back(use.name);
-  return fail(ErrorCode::unknown_name,
-              role + ": no envelope '" + name + "'" + base::suggestion(name, names));
+  return about(
+      fail(ErrorCode::unknown_name, "no envelope '" + name + "'" + base::suggestion(name, names)),
+      part);
 }
 
 Result<void> PatchCompiler::compile_wave(const OscillatorSpec& oscillator,
@@ -53,9 +57,11 @@ Result<void> PatchCompiler::compile_wave(const OscillatorSpec& oscillator,
   const bool from_file = oscillator.wave.empty();
   const std::vector<int> moved = from_file ? std::vector<int>{} : moved_numbers_of(oscillator.wave);
   if (moved.size() > 1) {
-    return fail(ErrorCode::unsupported, std::to_string(moved.size()) +
-                                            " numbers of the waveform '" + oscillator.wave +
-                                            "' are moved by maps; a waveform can follow one");
+    const int second = moved_[static_cast<std::size_t>(moved[1])].map;
+    return placed(fail(ErrorCode::unsupported,
+                       std::to_string(moved.size()) + " numbers of the waveform '" +
+                           oscillator.wave + "' are moved by maps; a waveform can follow one"),
+                  map_part(second, ".to").path);
   }
   const std::string key = from_file
                               ? oscillator.wave_file + "\n" + std::to_string(oscillator.wave_frame)
@@ -85,10 +91,13 @@ Result<dsp::WaveTables> PatchCompiler::wave_of(const std::string& name,
     return dsp::WaveTables::create(*surface);
   }
   if (moved.empty() && dsp::is_builtin_wave(name)) return dsp::builtin_wave(name);
-  auto found = curve(name, "wave");
-  if (!found) return found.error();
-  if (moved.empty()) return dsp::WaveTables::create(**found);
-  return dsp::WaveTables::create(**found, moved_[static_cast<std::size_t>(moved.front())].range);
+  const curves::NurbsCurve* found = spec_.curves.find_curve(name);
+  if (found == nullptr) {
+    return fail(ErrorCode::unknown_name,
+                "no curve '" + name + "'" + base::suggestion(name, spec_.curves.names()));
+  }
+  if (moved.empty()) return dsp::WaveTables::create(*found);
+  return dsp::WaveTables::create(*found, moved_[static_cast<std::size_t>(moved.front())].range);
 }
 
 Result<dsp::WaveTables> PatchCompiler::cycles_of(const OscillatorSpec& oscillator) const {

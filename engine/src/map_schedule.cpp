@@ -2,7 +2,6 @@
 #include "map_schedule.h"
 
 #include <algorithm>
-#include <string>
 
 namespace knotwave::engine {
 namespace {
@@ -24,7 +23,7 @@ class Scheduler {
 
   // Takes, again and again, all whose inputs are computed. What is left when nothing more can be
   // taken moves itself.
-  Result<std::vector<Step>> run() {
+  Schedule run() {
     const std::size_t total = maps_.size() + envelopes_.size() + lfos_.size();
     while (steps_.size() < total) {
       const std::size_t before = steps_.size();
@@ -39,9 +38,9 @@ class Scheduler {
         return slot_is_ready(kSlotLfoRate + static_cast<int>(i)) &&
                slots_are_ready(lfos_[i].control_slots);
       });
-      if (steps_.size() == before) return cycle();
+      if (steps_.size() == before) break;
     }
-    return std::move(steps_);
+    return {std::move(steps_), stuck()};
   }
 
  private:
@@ -69,16 +68,17 @@ class Scheduler {
     return std::all_of(slots.begin(), slots.end(), [&](int slot) { return slot_is_ready(slot); });
   }
 
-  Error cycle() const {
-    std::string stuck;
-    for (std::size_t i = 0; i < envelopes_.size(); ++i) {
-      if (!envelope_done_[i]) stuck += " envelope '" + envelopes_[i].name + "'";
-    }
-    for (std::size_t i = 0; i < lfos_.size(); ++i) {
-      if (!lfo_done_[i]) stuck += " lfo '" + lfos_[i].name + "'";
-    }
-    if (stuck.empty()) stuck = " curves of maps";
-    return fail(ErrorCode::cyclic_reference, "maps make these depend on themselves:" + stuck);
+  std::vector<Step> stuck() const {
+    std::vector<Step> left;
+    const auto add = [&](Kind kind, const std::vector<bool>& done) {
+      for (std::size_t i = 0; i < done.size(); ++i) {
+        if (!done[i]) left.push_back({kind, static_cast<int>(i)});
+      }
+    };
+    add(Kind::map, map_done_);
+    add(Kind::envelope, envelope_done_);
+    add(Kind::lfo, lfo_done_);
+    return left;
   }
 
   std::span<const PatchProgram::MapPart> maps_;
@@ -90,10 +90,9 @@ class Scheduler {
 
 }  // namespace
 
-Result<std::vector<PatchProgram::Step>> make_schedule(
-    std::span<const PatchProgram::MapPart> maps,
-    std::span<const PatchProgram::EnvelopePart> envelopes,
-    std::span<const PatchProgram::LfoPart> lfos) {
+Schedule make_schedule(std::span<const PatchProgram::MapPart> maps,
+                       std::span<const PatchProgram::EnvelopePart> envelopes,
+                       std::span<const PatchProgram::LfoPart> lfos) {
   return Scheduler(maps, envelopes, lfos).run();
 }
 

@@ -30,12 +30,29 @@ Result<std::unique_ptr<const PatchProgram>> PatchCompiler::compile() {
   }
   finish_flags();
   program_->spec_.curves = {};  // compiled away
+  program_->spec_.places = {};
   return std::unique_ptr<const PatchProgram>(std::move(program_));
 }
 
 Error PatchCompiler::about(Error error) const {
-  if (error.source.empty()) error.source = spec_.source_name;
+  error = placed(std::move(error), "");
   if (!spec_.name.empty()) error.message = "patch '" + spec_.name + "': " + error.message;
+  return error;
+}
+
+// Errors of a file of its own (a tuning) keep their place.
+Error PatchCompiler::placed(Error error, std::string_view path) const {
+  if (!error.source.empty()) return error;
+  const Place place = spec_.place_of(path);
+  error.source = spec_.source_name;
+  error.line = place.line;
+  error.column = place.column;
+  return error;
+}
+
+Error PatchCompiler::about(Error error, const Part& part) const {
+  error = placed(std::move(error), part.path);
+  error.message = part.name + ": " + error.message;
   return error;
 }
 
@@ -55,45 +72,48 @@ Result<void> PatchCompiler::check_counts() {
   const int sources = static_cast<int>(spec_.oscillators.size());
   for (const int end : {spec_.crossfade_a, spec_.crossfade_b}) {
     if (!spec_.crossfade_on || end == kNoiseSource || (end >= 0 && end < sources)) continue;
-    return fail(ErrorCode::value_out_of_range, "the crossfade names oscillator " +
-                                                   std::to_string(end) + "; there are " +
-                                                   std::to_string(sources));
+    return placed(fail(ErrorCode::value_out_of_range, "the crossfade names oscillator " +
+                                                          std::to_string(end) + "; there are " +
+                                                          std::to_string(sources)),
+                  "crossfade.between");
   }
   return {};
 }
 
 Result<const curves::NurbsCurve*> PatchCompiler::curve(const std::string& name,
-                                                       const std::string& role) const {
+                                                       const Part& part) const {
   if (const curves::NurbsCurve* found = spec_.curves.find_curve(name)) return found;
   const auto names = spec_.curves.names();
-  return fail(ErrorCode::unknown_name,
-              role + ": no curve '" + name + "'" + base::suggestion(name, names));
+  return about(
+      fail(ErrorCode::unknown_name, "no curve '" + name + "'" + base::suggestion(name, names)),
+      part);
 }
 
 Result<PatchCompiler::MovedCurve> PatchCompiler::moved_curve(const std::string& name,
-                                                             const std::string& role,
+                                                             const Part& part,
                                                              bool is_function) const {
-  auto found = curve(name, role);
+  auto found = curve(name, part);
   if (!found) return found.error();
   MovedCurve moved;
   moved.curve = *found;
-  for (const int number : moved_numbers_of(name)) {
+  const std::vector<int> numbers = moved_numbers_of(name);
+  for (const int number : numbers) {
     moved.options.controls.push_back(moved_[static_cast<std::size_t>(number)].range);
     moved.slots.push_back(kSlotControl + number);
   }
-  if (moved.slots.empty() || !is_function || moved.curve->dim() == 1) return moved;
-  return fail(
-      ErrorCode::unsupported,
-      role + ": map " +
-          std::to_string(moved_[static_cast<std::size_t>(moved_numbers_of(name)[0])].map + 1) +
-          " moves a number of curve '" + name +
-          "', whose points have a time of their own (x): y over x is worked out when the patch "
-          "is read and cannot move. A curve of one coordinate, with knots for the times, can");
+  if (numbers.empty() || !is_function || moved.curve->dim() == 1) return moved;
+  const Part mover = map_part(moved_[static_cast<std::size_t>(numbers[0])].map, ".to");
+  return about(fail(ErrorCode::unsupported,
+                    "it moves a number of curve '" + name + "' (" + part.name +
+                        "), whose points have a time of their own (x): y over x is worked out when "
+                        "the patch is read and cannot move. A curve of one coordinate, with knots "
+                        "for the times, can"),
+               mover);
 }
 
 Result<void> PatchCompiler::compile_envelopes() {
   for (const EnvelopeUse& use : spec_.envelopes) {
-    const std::string role = "envelope '" + use.name + "'";
+    const Part role{"envelope '" + use.name + "'", "envelopes." + use.name + ".curve"};
     auto found = moved_curve(use.curve, role);
     if (!found) return found.error();
     PatchProgram::EnvelopePart part;
@@ -101,13 +121,13 @@ Result<void> PatchCompiler::compile_envelopes() {
     spec.compile.controls = found->options.controls;
     part.control_slots = found->slots;
     auto program = dsp::EnvelopeProgram::create(*found->curve, spec);
-    if (!program) return in_role(program.error(), role);
+    if (!program) return about(program.error(), role);
     part.name = use.name;
     part.program = *std::move(program);
     part.velocity_time = use.velocity_time;
     part.key_time = use.key_time;
     part.tempo_beats = use.tempo_beats;
-    tell(role + ": curve '" + use.curve + "', " +
+    tell(role.name + ": curve '" + use.curve + "', " +
          std::to_string(part.program.program().piece_count()) + " pieces, largest error " +
          number_text(part.program.program().max_error()));
     program_->envelopes_.push_back(std::move(part));
@@ -130,7 +150,7 @@ Result<void> PatchCompiler::add_default_amp() {
   spec.seconds = 0.018;
   spec.sustain_u = 0.003;
   auto program = dsp::EnvelopeProgram::create(*made, spec);
-  if (!program) return in_role(program.error(), "the built-in amp envelope");
+  if (!program) return about(program.error(), {"the built-in amp envelope", "envelopes"});
   program_->amp_envelope_ = static_cast<int>(program_->envelopes_.size());
   PatchProgram::EnvelopePart part;
   part.name = "amp";
@@ -141,12 +161,12 @@ Result<void> PatchCompiler::add_default_amp() {
 
 Result<void> PatchCompiler::compile_lfos() {
   for (const LfoUse& use : spec_.lfos) {
-    const std::string role = "lfo '" + use.name + "'";
+    const Part role{"lfo '" + use.name + "'", "lfos." + use.name + ".curve"};
     auto found = moved_curve(use.curve, role);
     if (!found) return found.error();
     auto cycle = curves::compile_function(*found->curve, found->options);
-    if (!cycle) return in_role(cycle.error(), role);
-    tell(role + ": curve '" + use.curve + "', " + std::to_string(cycle->piece_count()) +
+    if (!cycle) return about(cycle.error(), role);
+    tell(role.name + ": curve '" + use.curve + "', " + std::to_string(cycle->piece_count()) +
          " pieces, largest error " + number_text(cycle->max_error()));
     program_->lfos_.push_back(
         {use.name, use.spec, *std::move(cycle), std::move(found->slots), false});
@@ -155,29 +175,31 @@ Result<void> PatchCompiler::compile_lfos() {
 }
 
 Result<void> PatchCompiler::compile_rest() {
+  const Part of_shaper{"shaper", "shaper.curve"}, of_law{"crossfade", "crossfade.law"};
+  const Part of_glide{"glide", "glide_curve"};
   if (!spec_.shaper_curve.empty()) {
-    auto found = moved_curve(spec_.shaper_curve, "shaper");
+    auto found = moved_curve(spec_.shaper_curve, of_shaper);
     if (!found) return found.error();
     auto shaper = dsp::ShaperProgram::create(*found->curve, found->options.controls);
-    if (!shaper) return in_role(shaper.error(), "shaper");
+    if (!shaper) return about(shaper.error(), of_shaper);
     program_->shaper_ = *std::move(shaper);
     program_->shaper_slots_ = std::move(found->slots);
   }
   if (spec_.crossfade_law == "linear") {
     program_->crossfade_law_ = dsp::CrossfadeLaw::linear();
   } else if (!spec_.crossfade_law.empty()) {
-    auto found = moved_curve(spec_.crossfade_law, "crossfade", false);
+    auto found = moved_curve(spec_.crossfade_law, of_law, false);
     if (!found) return found.error();
     auto law = dsp::CrossfadeLaw::create(*found->curve, found->options);
-    if (!law) return in_role(law.error(), "crossfade");
+    if (!law) return about(law.error(), of_law);
     program_->crossfade_law_ = *std::move(law);
     program_->crossfade_slots_ = std::move(found->slots);
   }
   if (!spec_.glide_curve.empty()) {
-    auto found = moved_curve(spec_.glide_curve, "glide");
+    auto found = moved_curve(spec_.glide_curve, of_glide);
     if (!found) return found.error();
     auto glide = curves::compile_function(*found->curve, found->options);
-    if (!glide) return in_role(glide.error(), "glide");
+    if (!glide) return about(glide.error(), of_glide);
     program_->glide_curve_ = *std::move(glide);
     program_->glide_slots_ = std::move(found->slots);
   }
@@ -210,11 +232,6 @@ int PatchCompiler::envelope_index(const std::string& name) const {
     if (spec_.envelopes[i].name == name) return static_cast<int>(i);
   }
   return -1;
-}
-
-Error PatchCompiler::in_role(Error error, const std::string& role) {
-  error.message = role + ": " + error.message;
-  return error;
 }
 
 }  // namespace knotwave::engine

@@ -3,6 +3,7 @@
 #pragma once
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "knotwave/engine/patch_program.h"
@@ -17,6 +18,11 @@ class PatchCompiler {
   Result<std::unique_ptr<const PatchProgram>> compile();
 
  private:
+  /// What a message is about: what people call it, and where it is written (as Places has it).
+  struct Part {
+    std::string name;
+    std::string path;
+  };
   /// A number of a curve that a map moves.
   struct MovedNumber {
     std::string curve;
@@ -35,27 +41,28 @@ class PatchCompiler {
   Result<void> compile_wave(const OscillatorSpec& oscillator, PatchProgram::Source& source);
   Result<dsp::WaveTables> wave_of(const std::string& name, const std::vector<int>& moved) const;
   Result<dsp::WaveTables> cycles_of(const OscillatorSpec& oscillator) const;
-  Result<void> link_envelope(const std::string& name, const std::string& role,
+  Result<void> link_envelope(const std::string& name, const Part& part,
                              PatchProgram::Source& source) const;
   Result<void> compile_envelopes();
   Result<void> add_default_amp();
   Result<void> compile_lfos();
   Result<void> compile_maps();
+  Result<void> check_range(const MovedNumber& moved) const;
   Result<void> check_source(MapSource source, int index) const;
   Result<void> check_target(const MapSpec& map) const;
-  Result<void> check_map(const MapSpec& map) const;
+  Result<void> check_map(const MapSpec& map, std::size_t number) const;
   Result<void> compile_map(const MapSpec& map, std::size_t number);
   /// Its curve or surface has weights that differ, or a map moves one of them.
   bool is_rational(const MapSpec& map) const;
   void drop_overridden_maps();
   Result<void> compile_rest();
-  Result<void> add_curve(const MapSpec& map, PatchProgram::MapPart& part) const;
+  Result<void> add_curve(const MapSpec& map, std::size_t number, PatchProgram::MapPart& part) const;
   Result<void> add_surface(const MapSpec& map, PatchProgram::MapPart& part) const;
   Result<void> order_steps();
   void finish_flags();
 
-  /// The curve, or unknown_name with a suggestion. `role` is how messages call it.
-  Result<const curves::NurbsCurve*> curve(const std::string& name, const std::string& role) const;
+  /// The curve, or unknown_name with a suggestion.
+  Result<const curves::NurbsCurve*> curve(const std::string& name, const Part& part) const;
   /// The curve with the numbers that maps move, and the slots these are in. `is_function`: not
   /// possible on a 2-D curve, which is unsupported.
   struct MovedCurve {
@@ -63,14 +70,17 @@ class PatchCompiler {
     curves::CompileOptions options;
     std::vector<int> slots;
   };
-  Result<MovedCurve> moved_curve(const std::string& name, const std::string& role,
+  Result<MovedCurve> moved_curve(const std::string& name, const Part& part,
                                  bool is_function = true) const;
   /// Whether an envelope or LFO is in what the map reads, through moved numbers too.
   bool varies(const MapSpec& map, int most_steps) const;
   std::vector<int> moved_numbers_of(const std::string& curve) const;
   int envelope_index(const std::string& name) const;
+  Error placed(Error error, std::string_view path) const;
   Error about(Error error) const;
-  static Error in_role(Error error, const std::string& role);
+  /// The error with the part's name in front, and its place unless it has one.
+  Error about(Error error, const Part& part) const;
+  Part map_part(int number, const char* key = "") const;
   void tell(std::string line);
 
   const PatchSpec& spec_;

@@ -18,7 +18,38 @@ Result<PatchSpec> read_patch(const base::Node& root, const std::string& source_n
   return PatchReader(root, source_name, shelf).read();
 }
 
+namespace {
+
+// Every key of `table` and of the tables in it. Arrays of numbers are one place.
+void note_places(const base::Node& table, const std::string& path, Places& places) {
+  for (const base::Node::Member& member : table.members) {
+    const std::string name = path.empty() ? member.key : path + "." + member.key;
+    places[name] = {std::max(member.value.line, 1), std::max(member.value.column, 1)};
+    if (member.value.kind == base::Node::Kind::table) note_places(member.value, name, places);
+    for (std::size_t i = 0; i < member.value.items.size(); ++i) {
+      const base::Node& item = member.value.items[i];
+      if (item.kind != base::Node::Kind::table) continue;
+      const std::string number = name + "." + std::to_string(i);
+      places[number] = {std::max(item.line, 1), std::max(item.column, 1)};
+      note_places(item, number, places);
+    }
+  }
+}
+
+}  // namespace
+
+Place PatchSpec::place_of(std::string_view path) const {
+  for (;;) {
+    if (const auto found = places.find(path); found != places.end()) return found->second;
+    if (path.empty()) return {};
+    const std::size_t dot = path.rfind('.');
+    path = path.substr(0, dot == std::string_view::npos ? 0 : dot);
+  }
+}
+
 Result<PatchSpec> PatchReader::read() {
+  patch_.places[""] = {std::max(root_.line, 1), std::max(root_.column, 1)};
+  note_places(root_, "", patch_.places);
   using Section = void (PatchReader::*)();
   // Top first, so that a misspelt section is named before what misses it; maps name all others.
   constexpr Section kSections[] = {

@@ -172,6 +172,13 @@ void PatchReader::read_envelope_places(TableReader& reader, EnvelopeUse& use) {
   use.spec.release_u = reader.number("release_at", none, low, high);
   use.spec.loop_start_u = use.spec.loop_end_u = low;
   exclude(reader, "sustain_at", "loop");
+  const Node* release = reader.node("release_at");
+  if (reader.node("sustain_at") != nullptr && release != nullptr && reader.ok() &&
+      use.spec.release_u < use.spec.sustain_u) {
+    reader.fail_at(*release, ErrorCode::parameter_out_of_range,
+                   "release_at (" + base::number_text(use.spec.release_u) +
+                       ") is before sustain_at (" + base::number_text(use.spec.sustain_u) + ")");
+  }
   const Node* loop = reader.array("loop");
   const std::vector<double> ends = reader.numbers("loop");
   if (loop == nullptr || !reader.ok()) return;
@@ -188,7 +195,6 @@ void PatchReader::read_envelope_places(TableReader& reader, EnvelopeUse& use) {
   }
   use.spec.loop_start_u = ends[0];
   use.spec.loop_end_u = ends[1];
-  const Node* release = reader.node("release_at");
   if (release != nullptr && use.spec.release_u < ends[1]) {
     reader.fail_at(*release, ErrorCode::parameter_out_of_range,
                    "release_at (" + base::number_text(use.spec.release_u) +

@@ -121,9 +121,10 @@ class LineReader {
   ScalaLine last_;
 };
 
-Result<double> parse_reference_hz(LineReader& reader, std::string_view source) {
+Result<double> parse_reference_hz(LineReader& reader, std::string_view source, ScalaLine& place) {
   const ScalaLine* at = reader.next_word();
   if (at == nullptr) return reader.missing("the reference frequency");
+  place = *at;
   double hz = 0;
   if (!parse_whole(at->word, hz)) {
     return fault(ErrorCode::malformed, quoted(at->word) + " is no frequency in Hz", source, *at);
@@ -218,6 +219,7 @@ Result<Scale> parse_scale(std::string_view text, std::string_view source) {
     const auto pitch = parse_pitch(*at, source);
     if (!pitch) return pitch.error();
     scale.degrees.push_back(*pitch);
+    scale.lines.push_back(*at);
   }
   // Text after the last note is allowed, but one more pitch means that the count is wrong.
   if (const ScalaLine* at = reader.next_word(); at != nullptr && parse_pitch(*at, source)) {
@@ -242,7 +244,7 @@ Result<KeyboardMapping> parse_mapping(std::string_view text, std::string_view so
   const auto reference = reader.integer("the reference note", 0, 127);
   if (!reference) return reference.error();
   mapping.reference_line = reader.last();
-  const auto hz = parse_reference_hz(reader, source);
+  const auto hz = parse_reference_hz(reader, source, mapping.hz_line);
   if (!hz) return hz.error();
   const auto octave = reader.integer("the formal octave", 0, kMaxScaleNotes);
   if (!octave) return octave.error();

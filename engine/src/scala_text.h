@@ -22,6 +22,7 @@ std::vector<ScalaLine> scala_lines(std::string_view text);
 /// A scale: pitches of degrees 1..n in semitones; the last is the interval of repetition.
 struct Scale {
   std::vector<double> degrees;
+  std::vector<ScalaLine> lines;  ///< where each is, for messages; none without a file
 
   /// Pitch of any degree in semitones from degree 0, repeating; 0 for a scale of no notes.
   double semitones(int degree) const;
@@ -35,7 +36,7 @@ struct KeyboardMapping {
   double reference_hz = 440;
   int octave_degree = 0;                    ///< the degree one pattern up, if there is a pattern
   std::vector<std::optional<int>> degrees;  ///< of the pattern's keys; empty = the linear mapping
-  ScalaLine reference_line;                 ///< where the reference note is, for messages
+  ScalaLine reference_line, hz_line;        ///< where the reference is, for messages
 
   /// Scale degree of a key and how many patterns above the middle note's it lies; none: unmapped.
   struct Place {

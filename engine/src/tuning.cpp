@@ -66,7 +66,11 @@ Result<Tuning> Tuning::create(std::string_view scl_text, std::string_view scl_na
                          "note " + std::to_string(note) + " would be " +
                              base::number_text((tuning.pitch_[index] - 69) / 12) +
                              " octaves from A4, the limit is 100");
-      error.source = scl_name;
+      const bool by_scale = !scale->lines.empty();
+      const ScalaLine& at = by_scale ? scale->lines.back() : mapping->hz_line;
+      error.source = by_scale ? scl_name : kbm_name;
+      error.line = at.line;
+      error.column = at.column;
       return error;
     }
   }

@@ -115,7 +115,7 @@ TEST(MovedRoles, ACurveWithATimeCoordinateIsRefusedWithWhatToDo) {
                            "[[maps]]\nfrom = 'mod'\nto = 'curve.timed.point.1.y'\nlow = 0\n"
                            "high = 1\n";
   EXPECT_THAT(error_of(text),
-              testing::HasSubstr("lfo 'wow': map 1 moves a number of curve 'timed'"));
+              testing::HasSubstr("map 1: it moves a number of curve 'timed' (lfo 'wow')"));
   EXPECT_THAT(error_of(text), testing::HasSubstr("A curve of one coordinate"));
 }
 

@@ -199,7 +199,7 @@ TEST(Tuning, FaultsOfAScaleAreNamedWithLineAndColumn) {
   EXPECT_EQ(scl_error("d\n1\n.nan\n"), "x.scl:3:1: error: '.nan' is no number of cents");
   EXPECT_EQ(scl_error("d\n1\n1.e9\n"), "x.scl:3:1: error: '1.e9' cents is more than 100 octaves");
   EXPECT_EQ(scl_error("d\n1\n12000.\n"),
-            "x.scl: error: note 0 would be -690 octaves from A4, the limit is 100");
+            "x.scl:3:1: error: note 0 would be -690 octaves from A4, the limit is 100");
 }
 
 TEST(Tuning, FaultsOfAMappingAreNamedWithLineAndColumn) {

@@ -3,7 +3,9 @@
 // docs/patch-format.md is the user's page of this. [control]
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "knotwave/curves/curve_file.h"
@@ -19,6 +21,15 @@ inline constexpr int kMaxEnvelopes = 6;
 inline constexpr int kMaxLfos = 4;
 inline constexpr int kMaxMaps = 32;
 inline constexpr double kNoiseOffDb = -200;
+
+/// Where a key of a patch file is written; both 0: in no file.
+struct Place {
+  int line = 0;
+  int column = 0;
+};
+/// Places of a patch's keys by path: "envelopes.amp.curve", "maps.0.to" (maps count from 0), "" for
+/// the file itself.
+using Places = std::map<std::string, Place, std::less<>>;
 
 /// A source of sound: a curve, a surface or sampled cycles as a waveform.
 struct OscillatorSpec {
@@ -152,6 +163,10 @@ struct PatchSpec {
   std::string tuning_file, keymap_file;  ///< .scl, .kbm: paths, or empty
   Tuning tuning;                         ///< what they say
   std::uint64_t seed = 1;
+  Places places;  ///< of what was read from a file, for the messages of later steps
+
+  /// Where `path` is written, or what it is in where the file has no such key.
+  Place place_of(std::string_view path) const;
 };
 
 /// Which patch plays a program or a drum key.

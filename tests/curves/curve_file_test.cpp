@@ -92,8 +92,8 @@ class RandomSpecs {
     return out;
   }
   std::vector<double> weights(int count) {
-    std::vector<double> out;
-    for (int i = 0; i < count; ++i) out.push_back(unit() + 0.01);
+    std::vector<double> out(static_cast<std::size_t>(count));
+    for (double& weight : out) weight = unit() + 0.01;
     return out;
   }
   std::vector<double> rising(int count) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Every way a curve can be wrong, and what the user is told.
-#include <functional>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -29,7 +28,7 @@ CurveSpec cubic() {
 
 struct Fault {
   const char* what;
-  std::function<void(CurveSpec&)> break_it;
+  void (*break_it)(CurveSpec&);
   ErrorCode code;
   const char* message;
 };
@@ -37,7 +36,7 @@ struct Fault {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-const Fault kFaults[] = {
+constexpr Fault kFaults[] = {
     {"degree 0", [](CurveSpec& s) { s.degree = 0; }, ErrorCode::degree_out_of_range,
      "curve 'bell': degree 0 is outside 1..15"},
     {"degree 16", [](CurveSpec& s) { s.degree = 16; }, ErrorCode::degree_out_of_range,

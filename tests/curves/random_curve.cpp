@@ -13,8 +13,8 @@ namespace {
 using curves::CurveSpec;
 
 std::vector<double> inner_knots(Dice& dice, int degree, int count) {
-  std::vector<double> inner;
-  for (int i = 0; i < count; ++i) inner.push_back(dice.between(0.001, 0.999));
+  std::vector<double> inner(static_cast<std::size_t>(count));
+  for (double& knot : inner) knot = dice.between(0.001, 0.999);
   if (dice.one_in(3)) {  // uniform
     for (int i = 0; i < count; ++i) inner[std::size_t(i)] = (i + 1.0) / (count + 1.0);
   }

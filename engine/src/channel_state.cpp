@@ -40,7 +40,7 @@ void ChannelState::reset() KNOTWAVE_RT {
 
 void ChannelState::reset_controllers() KNOTWAVE_RT {
   for (const int controller : {1, 2, 4}) store(controller, 0);
-  for (const int controller : {1, 2, 4, static_cast<int>(kExpression)}) {
+  for (const int controller : {1, 2, 4, kExpression}) {
     fine_[static_cast<std::size_t>(controller)] = 0;
     has_fine_[static_cast<std::size_t>(controller)] = false;
   }

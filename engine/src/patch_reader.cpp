@@ -138,7 +138,7 @@ void PatchReader::read_tuning(TableReader& top) {
   if (!top.ok()) return;
   auto tuning = Tuning::create(texts[0], patch_.tuning_file, texts[1], patch_.keymap_file);
   if (!tuning) return keep(tuning.error());
-  patch_.tuning = std::move(*tuning);
+  patch_.tuning = *tuning;
 }
 
 std::vector<std::string_view> PatchReader::curve_words(bool with_surfaces) const {
@@ -207,8 +207,10 @@ std::vector<const base::Node::Member*> PatchReader::named_tables(std::string_vie
   }
   for (const Node::Member& member : node->members) {
     if (member.value.kind != Node::Kind::table) {
-      fail_at(member.line, member.column, ErrorCode::wrong_type,
-              what + " must hold named tables: [" + what + "." + member.key + "]");
+      std::string message = what;
+      message.append(" must hold named tables: [").append(what).append(".");
+      message.append(member.key).append("]");
+      fail_at(member.line, member.column, ErrorCode::wrong_type, std::move(message));
     } else if (!curves::is_valid_name(member.key)) {
       fail_at(member.line, member.column, ErrorCode::malformed,
               what + ": '" + member.key + "': a name is 1 to 64 letters, digits, '_' and '-'");

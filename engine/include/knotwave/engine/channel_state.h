@@ -11,35 +11,33 @@
 namespace knotwave::engine {
 
 /// Controller numbers the engine itself gives a meaning to.
-enum Controller : int {
-  kBankMsb = 0,
-  kPortamentoTime = 5,
-  kDataEntryMsb = 6,
-  kVolume = 7,
-  kPan = 10,
-  kExpression = 11,
-  kBankLsb = 32,
-  kDataEntryLsb = 38,
-  kSustain = 64,
-  kPortamento = 65,
-  kSostenuto = 66,
-  kSoft = 67,
-  kTimbre = 74,
-  kPortamentoControl = 84,
-  kDataIncrement = 96,
-  kDataDecrement = 97,
-  kNrpnLsb = 98,
-  kNrpnMsb = 99,
-  kRpnLsb = 100,
-  kRpnMsb = 101,
-  kAllSoundOff = 120,
-  kResetControllers = 121,
-  kAllNotesOff = 123,
-  kOmniOff = 124,
-  kOmniOn = 125,
-  kMonoOn = 126,
-  kPolyOn = 127,
-};
+inline constexpr int kBankMsb = 0;
+inline constexpr int kPortamentoTime = 5;
+inline constexpr int kDataEntryMsb = 6;
+inline constexpr int kVolume = 7;
+inline constexpr int kPan = 10;
+inline constexpr int kExpression = 11;
+inline constexpr int kBankLsb = 32;
+inline constexpr int kDataEntryLsb = 38;
+inline constexpr int kSustain = 64;
+inline constexpr int kPortamento = 65;
+inline constexpr int kSostenuto = 66;
+inline constexpr int kSoft = 67;
+inline constexpr int kTimbre = 74;
+inline constexpr int kPortamentoControl = 84;
+inline constexpr int kDataIncrement = 96;
+inline constexpr int kDataDecrement = 97;
+inline constexpr int kNrpnLsb = 98;
+inline constexpr int kNrpnMsb = 99;
+inline constexpr int kRpnLsb = 100;
+inline constexpr int kRpnMsb = 101;
+inline constexpr int kAllSoundOff = 120;
+inline constexpr int kResetControllers = 121;
+inline constexpr int kAllNotesOff = 123;
+inline constexpr int kOmniOff = 124;
+inline constexpr int kOmniOn = 125;
+inline constexpr int kMonoOn = 126;
+inline constexpr int kPolyOn = 127;
 
 /// One channel's memory. All [audio]; data bytes above 127 are cut to 7 bits.
 class ChannelState {

@@ -10,26 +10,24 @@ inline constexpr int kNoiseSource = kMaxOscillators;
 inline constexpr int kMaxVoiceEnvelopes = kMaxEnvelopes + 1;  ///< one may be the built-in amp
 
 /// First slot of each group; an oscillator, LFO, envelope or moved number adds its index.
-enum Slot : int {
-  kSlotAmp = 0,
-  kSlotGain,
-  kSlotPitch,
-  kSlotPan,
-  kSlotCutoff,
-  kSlotResonance,
-  kSlotDrive,
-  kSlotCrossfade,
-  kSlotSourceLevel,
-  kSlotSourceGain = kSlotSourceLevel + kMaxSources,
-  kSlotSourcePitch = kSlotSourceGain + kMaxSources,
-  kSlotSourcePan = kSlotSourcePitch + kMaxSources,
-  kSlotSourcePhase = kSlotSourcePan + kMaxSources,
-  kSlotSourcePosition = kSlotSourcePhase + kMaxSources,
-  kSlotLfoRate = kSlotSourcePosition + kMaxSources,
-  kSlotEnvelopeTime = kSlotLfoRate + kMaxLfos,
-  kSlotControl = kSlotEnvelopeTime + kMaxVoiceEnvelopes,
-  kSlotCount = kSlotControl + kMaxMaps,
-};
+inline constexpr int kSlotAmp = 0;
+inline constexpr int kSlotGain = kSlotAmp + 1;
+inline constexpr int kSlotPitch = kSlotGain + 1;
+inline constexpr int kSlotPan = kSlotPitch + 1;
+inline constexpr int kSlotCutoff = kSlotPan + 1;
+inline constexpr int kSlotResonance = kSlotCutoff + 1;
+inline constexpr int kSlotDrive = kSlotResonance + 1;
+inline constexpr int kSlotCrossfade = kSlotDrive + 1;
+inline constexpr int kSlotSourceLevel = kSlotCrossfade + 1;
+inline constexpr int kSlotSourceGain = kSlotSourceLevel + kMaxSources;
+inline constexpr int kSlotSourcePitch = kSlotSourceGain + kMaxSources;
+inline constexpr int kSlotSourcePan = kSlotSourcePitch + kMaxSources;
+inline constexpr int kSlotSourcePhase = kSlotSourcePan + kMaxSources;
+inline constexpr int kSlotSourcePosition = kSlotSourcePhase + kMaxSources;
+inline constexpr int kSlotLfoRate = kSlotSourcePosition + kMaxSources;
+inline constexpr int kSlotEnvelopeTime = kSlotLfoRate + kMaxLfos;
+inline constexpr int kSlotControl = kSlotEnvelopeTime + kMaxVoiceEnvelopes;
+inline constexpr int kSlotCount = kSlotControl + kMaxMaps;
 
 /// Where a target's value goes. `index` as MapSpec::target_index; for curve_weight and curve_point
 /// the number of the moved number. [any]

@@ -126,9 +126,21 @@ def segments(rng):
                    [(u, side, value(curve, u, side)) for u, side in places(rng, inside(curve))])
 
 
+def removals(rng):
+    """A knot inserted up to degree times and removed as often: the same values."""
+    for degree in (1, 2, 3, 6, 10, 15):
+        for turn, kind in enumerate(KINDS):
+            curve = random_curve(rng, degree, 2, kind, rational=turn % 2 == 0)
+            times = 1 + (degree - 1) * turn // 4
+            yield ("insert_and_remove", [0.3, times], [curve],
+                   [(u, side, value(curve, u, side))
+                    for u, side in places(rng, inside(curve) + [0.3])])
+
+
 def cases():
     yield from paces(random.Random(3))
     yield from segments(random.Random(4))
+    yield from removals(random.Random(5))
 
 
 def text():

@@ -82,10 +82,24 @@ void HomogeneousCurve::round_to(CurveSpec& spec) const {
   }
 }
 
+void HomogeneousCurve::write_to(CurveSpec& spec) const {
+  round_to(spec);
+  if (!domain.periodic) return;
+  const auto p = index_of(degree), n = points.size() - p;
+  spec.points.resize(n * index_of(dim));
+  spec.weights.resize(n);
+  spec.knots.resize(n + p + 1);
+  spec.knots.erase(spec.knots.begin(), spec.knots.begin() + degree);
+}
+
 void bezier_points(const HomogeneousCurve& curve, int span,
                    std::span<HomogeneousPoint> out) noexcept {
+  bezier_points(curve, span, curve.knots[index_of(span)], curve.knots[index_of(span + 1)], out);
+}
+
+void bezier_points(const HomogeneousCurve& curve, int span, Knot left, Knot right,
+                   std::span<HomogeneousPoint> out) noexcept {
   const int p = curve.degree;
-  const Knot left = curve.knots[index_of(span)], right = curve.knots[index_of(span + 1)];
   const DoubleDouble width = curve.domain.distance(left, right);
   std::copy_n(curve.points.begin() + (span - p), p + 1, out.begin());
   // As the blossom f(left^l, ...): after p levels out[j] = f(left^{p-j}, the j knots to the right).

@@ -46,11 +46,16 @@ struct HomogeneousCurve {
   void insert(Knot u);
   /// Into the numbers of a spec.
   void round_to(CurveSpec& spec) const;
+  /// The same as create() reads it: a periodic curve's points and knots once.
+  void write_to(CurveSpec& spec) const;
 };
 
 /// Points that make span `span` a Bézier segment, to out[degree+1]. O(p^2), only convex blends: the
 /// left end of the span is inserted up to p times, then the right end.
 void bezier_points(const HomogeneousCurve& curve, int span,
+                   std::span<HomogeneousPoint> out) noexcept;
+/// The same for the part [left, right] of the span.
+void bezier_points(const HomogeneousCurve& curve, int span, Knot left, Knot right,
                    std::span<HomogeneousPoint> out) noexcept;
 
 }  // namespace knotwave::curves

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Edits that make a curve smaller, and say by how much it changes. [control]
+// Source: Piegl & Tiller, The NURBS Book, 2nd ed., 5.4 (knot removal); Lyche & Mørken, CAGD 4
+// (1987) (least squares). The bounds are our own: both curves as Bézier segments,
+// src/curve_distance.h.
+#pragma once
+#include "knotwave/curves/nurbs_curve.h"
+
+namespace knotwave::curves {
+
+/// A smaller curve, how often the edit could be done, and a proved bound: no point of it is farther
+/// than max_error (Euclidean, output units) from the point of the old curve at the same u, limits
+/// from either side at a knot included. The rounding of its points counts; the bound itself is
+/// computed to 2^-90 max|P|. It is at most 1/16 above the error there is, and for wild curves,
+/// where 64 parts of a span don't get as near, still a bound.
+struct ReducedCurve {
+  NurbsCurve curve;
+  int removed = 0;       ///< knots
+  double max_error = 0;  ///< 0 if nothing was removed
+};
+
+/// Takes the inner knot u out up to `times` times, as long as the bound stays within `tolerance`;
+/// removes fewer where it doesn't (or a weight would not stay positive, or a point would pass the
+/// limits). A jump is removed like any other knot when the tolerance allows: its ends become their
+/// mean. remove(insert(u)) gives the curve back: the same knots, and values within 4 ulp of max|P|;
+/// as rounding counts, that takes a tolerance of a few ulp, not 0. A periodic curve stays periodic;
+/// its seam keeps one knot. Errors: parameter_out_of_range (u is no inner knot, nor a seam with
+/// knots to spare), value_out_of_range (times < 0; tolerance < 0 or not finite).
+Result<ReducedCurve> remove_knot(const NurbsCurve& curve, double u, int times, double tolerance);
+
+/// Removes inner knots as long as `tolerance` allows, cheapest first; what each one costs is
+/// measured against the curve given, not against the step before, so errors don't add up unseen. A
+/// knot that once was too dear stays. The bound is for the whole curve. Errors: value_out_of_range.
+Result<ReducedCurve> remove_knots(const NurbsCurve& curve, double tolerance);
+
+}  // namespace knotwave::curves

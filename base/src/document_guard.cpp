@@ -24,6 +24,7 @@ class GuardScanner {
       } else {
         count(c);
         if (brackets_ > kMaxDocumentDepth || dots_ > kMaxDocumentDepth) keep(too_deep_message());
+        if (c == '\0') keep("a zero byte: this is not a text file");
         if (!is_ascii(c)) keep("only ASCII letters may stand outside of quotes and comments");
         step();
       }

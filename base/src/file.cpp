@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <system_error>
+#include <vector>
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -16,6 +17,8 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "knotwave/base/suggest.h"
 
 #include "unfinished_files.h"
 
@@ -54,6 +57,33 @@ std::string folder_of(const std::string& path) {
 }
 
 std::string name_of(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
+/// More entries are not looked at: a suggestion is not worth a long wait.
+constexpr int kMaxEntries = 4096;
+
+/// `; did you mean 'folder/name'?` for a path that names nothing: the same name with an ending, or
+/// the nearest name in its folder. Empty without one.
+std::string nearest_file(const std::string& path) {
+  const std::string name = name_of(path);
+  const std::unique_ptr<DIR, int (*)(DIR*)> stream(::opendir(folder_of(path).c_str()), ::closedir);
+  if (!stream || name.empty()) return {};
+  std::vector<std::string> names;
+  for (int i = 0; i < kMaxEntries; ++i) {
+    const dirent* entry = ::readdir(stream.get());
+    if (entry == nullptr) break;
+    if (entry->d_name[0] != '.') names.emplace_back(entry->d_name);
+  }
+  std::sort(names.begin(), names.end());  // the order of a folder is the file system's
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  const auto with_ending = std::find_if(known.begin(), known.end(), [&](std::string_view entry) {
+    return entry.starts_with(name + '.');
+  });
+  const std::string_view nearest =
+      with_ending != known.end() ? *with_ending : nearest_word(name, known);
+  if (nearest.empty()) return {};
+  const std::string folder = path.substr(0, path.size() - name.size());
+  return "; did you mean '" + folder + std::string(nearest) + "'?";
+}
 
 /// The process id at the end of `entry` if it is NAME.part-PID, else 0.
 pid_t part_owner(std::string_view entry, std::string_view name) {
@@ -113,8 +143,9 @@ Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.value < 0) {
     const bool missing = errno == ENOENT || errno == ENOTDIR;
-    return read_error(missing ? ErrorCode::file_not_found : ErrorCode::io_failed, path,
-                      missing ? "no such file" : std::generic_category().message(errno));
+    return read_error(
+        missing ? ErrorCode::file_not_found : ErrorCode::io_failed, path,
+        missing ? "no such file" + nearest_file(path) : std::generic_category().message(errno));
   }
   struct stat info {};
   if (::fstat(file.value, &info) == 0 && S_ISDIR(info.st_mode)) {

@@ -11,6 +11,29 @@ namespace {
 
 /// Longer words are not compared: the cost is the product of the lengths.
 constexpr std::size_t kMaxWord = 64;
+/// A shorter beginning says too little.
+constexpr std::size_t kMinBeginning = 3;
+
+/// ASCII only, in any locale.
+std::string lower_case(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+/// The only known word that begins so, or empty.
+std::string_view completed(std::string_view word, std::span<const std::string_view> known) {
+  std::string_view found;
+  if (word.size() < kMinBeginning) return found;
+  for (const std::string_view candidate : known) {
+    if (!candidate.starts_with(word)) continue;
+    if (!found.empty()) return {};
+    found = candidate;
+  }
+  return found;
+}
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   const std::size_t width = b.size() + 1;
@@ -36,16 +59,17 @@ std::string_view nearest_word(std::string_view word, std::span<const std::string
   if (word.size() > kMaxWord) return {};
   std::string_view best;
   std::size_t best_distance = word.size() / 3 + 2;
+  const std::string lower = lower_case(word);
   for (const std::string_view candidate : known) {
     if (candidate.size() > kMaxWord) continue;
-    const std::size_t distance = edit_distance(word, candidate);
+    const std::size_t distance = edit_distance(lower, lower_case(candidate));
     if (2 * distance > std::max(word.size(), candidate.size())) continue;
     if (distance < best_distance) {
       best = candidate;
       best_distance = distance;
     }
   }
-  return best;
+  return best.empty() ? completed(word, known) : best;
 }
 
 std::string suggestion(std::string_view word, std::span<const std::string_view> known) {

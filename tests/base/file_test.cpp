@@ -58,6 +58,22 @@ TEST(ReadFile, NamesWhatIsWrong) {
   EXPECT_TRUE(read_file(folder.file("eleven"), 11));
 }
 
+TEST(ReadFile, OfAMissingFileSuggestsTheNearestNameInItsFolder) {
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_file(folder.file("bell.toml"), ""));
+  ASSERT_TRUE(write_file(folder.file("first-light.mid"), ""));
+  const auto message = [&](const std::string& name) {
+    return read_file(folder.file(name), 10).error().message;
+  };
+  const std::string bell = "no such file; did you mean '" + folder.file("bell.toml") + "'?";
+  EXPECT_EQ(message("bel.toml"), bell);
+  EXPECT_EQ(message("bell"), bell) << "only the ending is missing";
+  EXPECT_EQ(message("first-ligth.mid"),
+            "no such file; did you mean '" + folder.file("first-light.mid") + "'?");
+  EXPECT_EQ(message("something-else.wav"), "no such file");
+  EXPECT_EQ(read_file(folder.file("none/bell.toml"), 10).error().message, "no such file");
+}
+
 TEST(ReadFile, OfAnEndlessDeviceStopsAtTheLimit) {
   EXPECT_EQ(read_file("/dev/zero", 1 << 20).error().code, ErrorCode::file_too_large);
 }

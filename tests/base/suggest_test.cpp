@@ -24,6 +24,19 @@ TEST(Suggest, AnEarlierWordWinsATie) {
   EXPECT_EQ(nearest_word("pas", kTie), "pans");
 }
 
+TEST(Suggest, CaseDoesNotCount) {
+  EXPECT_EQ(nearest_word("WEIGHTS", kKeys), "weights");
+  EXPECT_EQ(nearest_word("Knot", kKeys), "knots");
+}
+
+TEST(Suggest, TheOnlyWordThatBeginsSoIsMeant) {
+  constexpr std::array<std::string_view, 3> kLong = {"release_at", "release_velocity",
+                                                     "sustain_at"};
+  EXPECT_EQ(nearest_word("sus", kLong), "sustain_at");
+  EXPECT_EQ(nearest_word("su", kLong), "") << "two letters say too little";
+  EXPECT_EQ(nearest_word("rel", kLong), "") << "two words begin so";
+}
+
 TEST(Suggest, WhatIsTooFarIsNotSuggested) {
   EXPECT_EQ(nearest_word("sustain", kKeys), "");
   EXPECT_EQ(nearest_word("", kKeys), "");

@@ -11,7 +11,8 @@
 
 namespace knotwave::base {
 
-/// Errors: file_not_found, io_failed (a folder, no permission), file_too_large.
+/// Errors: file_not_found (the message suggests the nearest name in that folder), io_failed (a
+/// folder, no permission), file_too_large.
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes);
 
 /// A file being written beside its final name as NAME.part-PID. commit() syncs and renames it; the

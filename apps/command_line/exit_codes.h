@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What knotwave-render ends with.
+// What our programs end with.
 #pragma once
 #include "knotwave/base/result.h"
 
-namespace knotwave::render {
+namespace knotwave::command_line {
 
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailure = 1;
@@ -24,4 +24,4 @@ constexpr int exit_code_of(ErrorCode code) {
   }
 }
 
-}  // namespace knotwave::render
+}  // namespace knotwave::command_line

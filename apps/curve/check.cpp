@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
-#include "knotwave/base/file.h"
 #include "knotwave/engine/patch.h"
 
 #include "curve_input.h"
@@ -20,20 +19,16 @@ std::string count_of(const curves::CurveSet& set) {
 
 /// What a file holds.
 Result<std::string> checked(const std::string& path) {
-  const auto text = base::read_file(path, base::kMaxDocumentBytes);
-  if (!text) return text.error();
-  const auto root = base::parse_document(*text, path);
-  if (!root) return root.error();
-  const auto kind = curves::read_file_kind(*root, path);
-  if (!kind) return kind.error();
-  if (*kind == curves::FileKind::curve) {
-    const auto set = curves::parse_curves(*text, path);
+  const auto file = read_known_file(path);
+  if (!file) return file.error();
+  if (file->kind == curves::FileKind::curve) {
+    const auto set = curves::parse_curves(file->text, path);
     if (!set) return set.error();
     return "curve file, " + count_of(*set);
   }
   const auto bank = engine::read_bank(path);
   if (!bank) return bank.error();
-  if (*kind == curves::FileKind::bank) {
+  if (file->kind == curves::FileKind::bank) {
     return "bank, " + std::to_string(bank->patches.size()) + " patches, " +
            std::to_string(bank->entries.size()) + " entries";
   }
@@ -54,6 +49,10 @@ std::string check_text(const CurveOptions& options, bool& failed) {
     failed = true;
     Error error = what.error();
     if (error.source.empty()) error.source = path;
+    const std::string name = reference_of(path).name;
+    if (error.code == ErrorCode::file_not_found && !name.empty()) {
+      error.message = "no such file; check reads whole files: leave out '#" + name + "'";
+    }
     std::fprintf(stderr, "%s\n", error.to_string().c_str());
   }
   return text;

@@ -9,15 +9,21 @@
 
 namespace knotwave::curve_app {
 
-Result<curves::CurveSet> read_set(const std::string& path) {
-  const auto text = base::read_file(path, base::kMaxDocumentBytes);
+Result<KnownFile> read_known_file(const std::string& path) {
+  auto text = base::read_file(path, base::kMaxDocumentBytes);
   if (!text) return text.error();
   const auto root = base::parse_document(*text, path);
   if (!root) return root.error();
   const auto kind = curves::read_file_kind(*root, path);
   if (!kind) return kind.error();
-  if (*kind == curves::FileKind::curve) return curves::parse_curves(*text, path);
-  if (*kind == curves::FileKind::bank) {
+  return KnownFile{std::move(*text), *kind};
+}
+
+Result<curves::CurveSet> read_set(const std::string& path) {
+  const auto file = read_known_file(path);
+  if (!file) return file.error();
+  if (file->kind == curves::FileKind::curve) return curves::parse_curves(file->text, path);
+  if (file->kind == curves::FileKind::bank) {
     Error error = fail(ErrorCode::unsupported, "a bank holds no curves; its patches do");
     error.source = path;
     return error;

@@ -8,6 +8,14 @@
 
 namespace knotwave::curve_app {
 
+/// A file as text, with what it says it is.
+struct KnownFile {
+  std::string text;
+  curves::FileKind kind;
+};
+/// Errors: those of the file and of TOML; what read_file_kind() says.
+Result<KnownFile> read_known_file(const std::string& path);
+
 /// Every curve and surface of a curve file or a patch. Errors: those of the file; unsupported for
 /// files that hold none (banks, envelope patches).
 Result<curves::CurveSet> read_set(const std::string& path);

@@ -4,6 +4,7 @@
 #include "knotwave/base/document.h"
 #include "knotwave/curves/map_grid.h"
 
+#include "command_line/json.h"
 #include "curve_input.h"
 #include "verbs.h"
 
@@ -86,7 +87,7 @@ std::string table_of(const std::vector<Row>& rows) {
 }
 
 std::string json_of(const std::vector<Row>& rows, const std::string& name, int dim) {
-  std::string text = "{\"name\": " + json_string(name) + ", \"rows\": [\n";
+  std::string text = "{\"name\": " + command_line::json_string(name) + ", \"rows\": [\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     text += "  {\"u\": " + digits17(rows[i].at.u);
     if (rows[i].at.v) text += ", \"v\": " + digits17(*rows[i].at.v);
@@ -115,15 +116,6 @@ std::string digits17(double value) {
   const auto end =
       std::to_chars(text, text + sizeof text, value, std::chars_format::general, 17).ptr;
   return {text, end};
-}
-
-std::string json_string(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
 }
 
 Result<std::string> eval_text(const CurveOptions& options) {

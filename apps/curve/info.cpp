@@ -4,6 +4,7 @@
 #include "knotwave/base/document.h"
 #include "knotwave/curves/algorithms.h"
 
+#include "command_line/json.h"
 #include "curve_input.h"
 #include "verbs.h"
 
@@ -26,7 +27,7 @@ Fact number_fact(const std::string& word, double value) {
   return {word, number_text(value), digits17(value)};
 }
 Fact text_fact(const std::string& word, const std::string& text) {
-  return {word, text, json_string(text)};
+  return {word, text, command_line::json_string(text)};
 }
 Fact claim_fact(const std::string& word, bool is) {
   return {word, is ? "yes" : "no", is ? "true" : "false"};
@@ -141,7 +142,7 @@ std::string json_of(const Facts& facts) {
   for (const Fact& fact : facts) {
     std::string key = fact.word;
     std::replace(key.begin(), key.end(), ' ', '_');
-    text += (text.empty() ? "{" : ", ") + json_string(key) + ": " + fact.json;
+    text += (text.empty() ? "{" : ", ") + command_line::json_string(key) + ": " + fact.json;
   }
   return text + "}";
 }

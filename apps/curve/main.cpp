@@ -4,19 +4,18 @@
 #include <cstdio>
 #include <new>
 
+#include "command_line/exit_codes.h"
+#include "command_line/messages.h"
 #include "options.h"
 #include "verbs.h"
 
 namespace {
 
 using namespace knotwave;
+using namespace knotwave::command_line;
 using namespace knotwave::curve_app;
 
-int say(const Error& error) {
-  const char* prefix = error.source.empty() ? "knotwave-curve: " : "";
-  std::fprintf(stderr, "%s%s\n", prefix, error.to_string().c_str());
-  return error.code == ErrorCode::usage ? kExitUsage : kExitFailure;
-}
+int say(const Error& error) { return say_error("knotwave-curve", error); }
 
 int print(const std::string& text) {
   const bool written =

@@ -7,10 +7,6 @@
 
 namespace knotwave::curve_app {
 
-inline constexpr int kExitOk = 0;
-inline constexpr int kExitFailure = 1;
-inline constexpr int kExitUsage = 2;
-
 enum class Verb { check, info, eval, plot };
 
 /// A place to evaluate at: u, and v for surfaces.

@@ -19,7 +19,5 @@ Result<std::string> plot_text_or_file(const CurveOptions& options);
 
 /// 17 significant digits: reads back as the same double.
 std::string digits17(double value);
-/// A JSON string with its quotes.
-std::string json_string(const std::string& text);
 
 }  // namespace knotwave::curve_app

@@ -3,19 +3,24 @@
 #include <csignal>
 #include <cstdio>
 #include <new>
+#include <optional>
+#include <span>
+#include <utility>
 
 #include <unistd.h>
 
 #include "knotwave/base/file.h"
 #include "knotwave/curves/curve_program.h"
 
-#include "exit_codes.h"
+#include "command_line/exit_codes.h"
+#include "command_line/messages.h"
 #include "options.h"
 #include "render_job.h"
 
 namespace {
 
 using namespace knotwave;
+using namespace knotwave::command_line;
 using namespace knotwave::render;
 
 constexpr std::size_t kWarningsShown = 20;
@@ -33,11 +38,7 @@ void set_signals() {
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // the write fails then
 }
 
-int say(const Error& error) {
-  const std::string prefix = error.source.empty() ? "knotwave-render: " : "";
-  std::fprintf(stderr, "%s%s\n", prefix.c_str(), error.to_string().c_str());
-  return exit_code_of(error.code);
-}
+int say(const Error& error) { return say_error("knotwave-render", error); }
 
 void say_warnings(const std::vector<std::string>& warnings) {
   for (std::size_t i = 0; i < warnings.size() && i < kWarningsShown; ++i) {
@@ -49,30 +50,47 @@ void say_warnings(const std::vector<std::string>& warnings) {
   }
 }
 
+/// The file the JSON goes to, if it goes to one: opened before the long work, so that a place that
+/// cannot be written is told at once.
+Result<std::optional<base::AtomicFile>> open_json(const RenderOptions& options) {
+  std::optional<base::AtomicFile> file;
+  if (options.json.empty() || options.json == "-") return file;
+  auto created = base::AtomicFile::create(options.json);
+  if (!created) return created.error();
+  file = std::move(created).value();
+  return file;
+}
+
 /// The report goes where the samples and the JSON do not.
-int say_report(const RenderOptions& options, const RenderReport& report) {
+int say_report(const RenderOptions& options, const RenderReport& report,
+               std::optional<base::AtomicFile>& json_file) {
   const bool is_stdout_taken = options.output == "-" || options.json == "-";
   std::fprintf(is_stdout_taken ? stderr : stdout, "%s\n", report_line(report).c_str());
   if (options.json.empty()) return kExitOk;
   const std::string json = report_json(report);
-  if (options.json == "-") return std::fputs(json.c_str(), stdout) < 0 ? kExitFailure : kExitOk;
-  const auto written = base::write_file(options.json, json);
-  return written ? kExitOk : say(written.error());
+  if (!json_file) return std::fputs(json.c_str(), stdout) < 0 ? kExitFailure : kExitOk;
+  if (auto good = json_file->write(std::as_bytes(std::span(json))); !good) return say(good.error());
+  const auto good = json_file->commit();
+  return good ? kExitOk : say(good.error());
+}
+
+int check(const RenderOptions& options, const RenderInput& input) {
+  if (!options.quiet) say_warnings(input.warnings);
+  std::printf("%s\n", check_line(options, input).c_str());
+  return kExitOk;
 }
 
 int run(const RenderOptions& options) {
   if (options.baseline_simd) curves::set_simd_level(curves::SimdLevel::baseline);
   const auto input = read_input(options);
   if (!input) return say(input.error());
-  if (options.check) {
-    if (!options.quiet) say_warnings(input->warnings);
-    std::printf("%s\n", check_line(options, *input).c_str());
-    return kExitOk;
-  }
+  if (options.check) return check(options, *input);
+  auto json_file = open_json(options);
+  if (!json_file) return say(json_file.error());
   const auto report = render::render(options, *input);
   if (!report) return say(report.error());
   if (!options.quiet) say_warnings(report->warnings);
-  return say_report(options, *report);
+  return say_report(options, *report, *json_file);
 }
 
 }  // namespace

@@ -2,24 +2,21 @@
 // The only file of knotwave-render that knows CLI11.
 #include "options.h"
 
-#include <array>
-#include <cstdio>
 #include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
-#include "knotwave/base/suggest.h"
-
+#include "command_line/options.h"
 #include "demo.h"
-#include "exit_codes.h"
 
 namespace knotwave::render {
 namespace {
 
 constexpr const char* kAbout =
     "Plays a MIDI file with a Knotwave patch or bank and writes the sound to a file.\n"
-    "The same input gives the same samples on every machine, for any --block and --threads;\n"
-    "the last line printed holds their SHA-256.";
+    "The same input gives the same samples on every machine, for any --block and\n"
+    "--threads; the last line printed holds their SHA-256.";
 
 constexpr const char* kMore =
     "Examples:\n"
@@ -29,10 +26,14 @@ constexpr const char* kMore =
     "  knotwave-render --check bell.toml song.mid\n"
     "  knotwave-render bell.toml song.mid -o - | aplay -t raw -f FLOAT_LE -c 2 -r 48000\n"
     "\n"
-    "An output file is complete or not there: it is written beside its name and renamed at the "
-    "end.\n"
-    "Exit codes: 0 done, 1 failure, 2 wrong usage, 75 try again (disk full, out of memory),\n"
-    "130 interrupted.";
+    "An output file is complete or not there: it is written beside its name and\n"
+    "renamed at the end.\n"
+    "Exit codes: 0 done, 1 failure, 2 wrong usage, 75 try again (disk full, out of\n"
+    "memory), 130 interrupted.";
+
+constexpr const char* kSampleFormats[] = {"16", "24", "32f"};
+constexpr io::SampleFormat kFormatOf[] = {io::SampleFormat::pcm16, io::SampleFormat::pcm24,
+                                          io::SampleFormat::float32};
 
 std::string demo_names() {
   std::string names;
@@ -40,125 +41,121 @@ std::string demo_names() {
   return names;
 }
 
-std::string parse_tail(const std::string& text, std::optional<double>& tail_s) {
+std::string read_tail(const std::string& text, std::optional<double>& tail_s) {
   if (text == "auto") return {};
-  double seconds = 0;
-  if (!CLI::detail::lexical_cast(text, seconds) || !(seconds >= 0) || seconds > 3600) {
-    return "--tail: '" + text + "' is neither 'auto' nor a number of seconds from 0 to 3600";
+  const auto seconds = command_line::number_in(text);
+  if (!seconds || *seconds < 0 || *seconds > 3600) {
+    return "'" + text + "' is neither 'auto' nor a number of seconds from 0 to 3600";
   }
-  tail_s = seconds;
+  tail_s = *seconds;
   return {};
 }
 
-io::SampleFormat sample_format(const std::string& word) {
-  return word == "16"   ? io::SampleFormat::pcm16
-         : word == "24" ? io::SampleFormat::pcm24
-                        : io::SampleFormat::float32;
+void add_input_and_output(CLI::App& app, RenderOptions& o) {
+  using namespace command_line;
+  add_text(app, {"PATCH", "patch or bank to play (.toml)", ""}, o.patch);
+  add_text(app, {"SCORE", "MIDI file to play (.mid, .rmi)", ""}, o.score);
+  add_text(app,
+           {"-o,--output",
+            "file to write: .wav or .flac by its ending; - writes headerless 32-bit float samples, "
+            "interleaved, to standard output",
+            "FILE|-"},
+           o.output);
+  add_text(app, {"--demo", "play a built-in demo instead: " + demo_names(), "NAME"}, o.demo);
+  add_flag(app, {"--check", "read everything, render nothing", ""}, o.check);
+  add_text(app,
+           {"--stems", "also write one file for each MIDI channel used, into this folder", "DIR"},
+           o.stems);
+  add_text(app,
+           {"--json", "write the report as JSON to a file, or to standard output (-)", "FILE|-"},
+           o.json);
+  add_flag(app, {"-q,--quiet", "no progress and no warnings", ""}, o.quiet);
 }
 
-void add_options(CLI::App& app, RenderOptions& o, std::string& tail) {
-  app.add_option("PATCH", o.patch, "patch or bank to play (.toml)");
-  app.add_option("SCORE", o.score, "MIDI file to play (.mid, .rmi)");
-  app.add_option("-o,--output", o.output,
-                 "file to write: .wav or .flac by its ending; - writes headerless 32-bit float "
-                 "samples, interleaved, to standard output");
-  app.add_option("--demo", o.demo, "play a built-in demo instead: " + demo_names())
-      ->type_name("NAME");
-  app.add_flag("--check", o.check, "read everything, render nothing");
-  app.add_option_function<std::string>(
-         "--bits", [&o](const std::string& word) { o.format = sample_format(word); },
-         "sample format: 16, 24 (both dithered) or 32f; 24 by default")
-      ->check(CLI::IsMember({"16", "24", "32f"}).description(""))
-      ->type_name("16|24|32f");
-  app.add_option("--rate", o.rate_hz, "samples a second, 8000 to 768000")
-      ->check(CLI::Range(8000, 768000).description(""))
-      ->capture_default_str();
-  app.add_option("--tail", tail,
-                 "seconds after the song's end, or auto: until silence, 30 s at most")
-      ->type_name("auto|SECONDS")
-      ->capture_default_str();
-  app.add_option("--max-length", o.max_length_s, "a song of more seconds is refused")
-      ->check(CLI::Range(0.0, 1e9).description(""))
-      ->capture_default_str();
-  app.add_option("--seed", o.seed, "seed of everything random")->capture_default_str();
-  app.add_option("--stems", o.stems, "also write one file for each MIDI channel used, into DIR")
-      ->type_name("DIR");
-  app.add_option("--json", o.json, "write the report as JSON to FILE, or to standard output (-)")
-      ->type_name("FILE|-");
-  app.add_option("--block", o.block_frames, "samples rendered at once; changes no sample")
-      ->check(CLI::Range(1, 65536).description(""))
-      ->capture_default_str();
-  app.add_option("--threads", o.threads, "threads to render with; changes no sample")
-      ->check(CLI::Range(1, 64).description(""))
-      ->capture_default_str();
-  app.add_option_function<std::string>(
-         "--simd", [&o](const std::string& level) { o.baseline_simd = level == "baseline"; },
-         "processor instructions: best there are, or baseline; changes no sample")
-      ->check(CLI::IsMember({"best", "baseline"}).description(""))
-      ->type_name("best|baseline");
-  app.add_flag("-q,--quiet", o.quiet, "no progress and no warnings");
+void add_sound(CLI::App& app, RenderOptions& o) {
+  using namespace command_line;
+  add_choice(
+      app,
+      {"--bits", "sample format: 16 or 24 bits, dithered, or 32-bit float (24 if not given)", ""},
+      {std::begin(kSampleFormats), std::end(kSampleFormats)},
+      [&o](std::size_t i) { o.format = kFormatOf[i]; });
+  add_number(app, {"--rate", "samples a second", "HZ"}, o.rate_hz, 8000, 768000);
+  add_checked(app,
+              {"--tail",
+               "how long to go on after the song's end: 0 to 3600 seconds, or auto: until silence, "
+               "30 s at most (auto if not given)",
+               "auto|SECONDS"},
+              [&o](const std::string& text) { return read_tail(text, o.tail_s); });
+  add_number(app, {"--max-length", "a longer song is refused", "SECONDS"}, o.max_length_s, 0.0,
+             1e9);
+  add_number(app, {"--seed", "seed of everything random", ""}, o.seed);
 }
 
-/// What is wrong with options that are each good in themselves; empty when nothing is.
-std::string conflict(const RenderOptions& o) {
-  const bool has_files = !o.patch.empty() || !o.score.empty();
-  if (!o.demo.empty() && has_files) return "--demo plays its own patch and score";
-  if (!o.demo.empty() && !is_demo(o.demo)) return unknown_demo(o.demo).message;
-  if (o.demo.empty() && (o.patch.empty() || o.score.empty())) {
-    return "a PATCH and a SCORE are needed, or --demo NAME";
-  }
-  if (!o.check && o.output.empty()) return "where to? -o FILE.wav, -o FILE.flac, -o - or --check";
-  if (o.output == "-" && o.json == "-") return "-o - and --json - cannot share standard output";
-  return {};
+void add_speed(CLI::App& app, RenderOptions& o) {
+  using namespace command_line;
+  add_number(app, {"--block", "samples rendered at once; changes no sample", ""}, o.block_frames, 1,
+             65536);
+  add_number(app, {"--threads", "threads to render with; changes no sample", ""}, o.threads, 1, 64);
+  add_choice(app,
+             {"--simd",
+              "processor instructions: the best there are, or what every one of its kind has; "
+              "changes no sample (best if not given)",
+              ""},
+             {"best", "baseline"}, [&o](std::size_t i) { o.baseline_simd = i == 1; });
 }
 
-constexpr auto kOptionNames = std::to_array<std::string_view>(
-    {"--help", "--version", "--output", "--demo", "--check", "--bits", "--rate", "--tail",
-     "--max-length", "--seed", "--stems", "--json", "--block", "--threads", "--simd", "--quiet"});
+bool is_midi_name(std::string_view name) {
+  return name.ends_with(".mid") || name.ends_with(".midi") || name.ends_with(".rmi");
+}
 
-/// The first word that looks like an option and is none; empty when there is none.
-std::string unknown_option(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word(argv[i]);
-    const std::string_view name = word.substr(0, word.find('='));
-    if (!name.starts_with("--") || name.size() == 2) continue;
-    if (std::find(kOptionNames.begin(), kOptionNames.end(), name) == kOptionNames.end()) {
-      return std::string(name);
+/// What is wrong with PATCH and SCORE; empty when nothing is.
+std::string input_conflict(const RenderOptions& o) {
+  if (!o.demo.empty()) {
+    if (!o.patch.empty()) {
+      return "--demo plays its own patch and score; leave out '" + o.patch + "'";
     }
+    return is_demo(o.demo) ? "" : unknown_demo(o.demo).message;
   }
+  if (o.patch.empty()) return "a PATCH and a SCORE are needed, or --demo NAME";
+  if (is_midi_name(o.patch)) {
+    return "the patch comes before the score, but '" + o.patch + "' is named as a MIDI file";
+  }
+  if (o.score.empty()) return "after the patch '" + o.patch + "' a SCORE is needed (.mid, .rmi)";
   return {};
 }
 
-int usage_error(const std::string& message) {
-  std::fprintf(stderr, "knotwave-render: %s\nTry 'knotwave-render --help'.\n", message.c_str());
-  return kExitUsage;
+/// What is wrong with where the sound shall go; empty when nothing is.
+std::string output_conflict(const RenderOptions& o) {
+  if (o.output.empty()) {
+    return o.check ? "" : "where to? -o FILE.wav, -o FILE.flac, -o - or --check";
+  }
+  if (o.output == "-") {
+    return o.json == "-" ? "-o - and --json - cannot share standard output" : "";
+  }
+  const bool is_flac = o.output.ends_with(".flac");
+  if (!is_flac && !o.output.ends_with(".wav")) {
+    return "--output: '" + o.output + "' ends neither in .wav nor in .flac";
+  }
+  if (is_flac && o.format == io::SampleFormat::float32) {
+    return "FLAC holds 16 or 24 bits, not 32-bit float: use --bits 24 or a name that ends in .wav";
+  }
+  return {};
 }
 
 }  // namespace
 
 CommandLine read_command_line(int argc, char** argv) {
   CommandLine line;
-  std::string tail = "auto";
+  RenderOptions& options = line.options;
   CLI::App app(kAbout, "knotwave-render");
-  app.footer(kMore);
-  app.set_version_flag("--version", std::string("knotwave-render ") + KNOTWAVE_VERSION);
-  app.get_formatter()->column_width(26);
-  add_options(app, line.options, tail);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& done) {
-    line.exit_code = app.exit(done);
-    return line;
-  } catch (const CLI::ParseError& error) {
-    const std::string unknown = unknown_option(argc, argv);
-    line.exit_code = usage_error(unknown.empty() ? error.what()
-                                                 : "unknown option '" + unknown + "'" +
-                                                       base::suggestion(unknown, kOptionNames));
-    return line;
-  }
-  std::string problem = parse_tail(tail, line.options.tail_s);
-  if (problem.empty()) problem = conflict(line.options);
-  if (!problem.empty()) line.exit_code = usage_error(problem);
+  command_line::prepare(app, kMore);
+  add_input_and_output(app, options);
+  add_sound(app, options);
+  add_speed(app, options);
+  line.exit_code = command_line::read_words(app, argc, argv, [&options] {
+    std::string fault = input_conflict(options);
+    return fault.empty() ? output_conflict(options) : fault;
+  });
   return line;
 }
 

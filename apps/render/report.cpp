@@ -9,6 +9,8 @@
 
 #include "knotwave/io/midi_file.h"
 
+#include "command_line/json.h"
+
 namespace knotwave::render {
 namespace {
 
@@ -16,14 +18,9 @@ std::string json_number(double value, int decimals) {
   return std::isfinite(value) ? fixed(value, decimals) : "null";
 }
 
-/// Quoted. Control characters and bad UTF-8 are replaced before, so two escapes are enough.
+/// Names of files and texts of songs may hold any bytes.
 std::string json_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : io::printable(text, 4096)) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
+  return command_line::json_string(io::printable(text, 4096));
 }
 
 /// An object being written, two blanks a level.

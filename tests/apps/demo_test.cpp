@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "demo.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -27,6 +28,20 @@ TEST(Demo, EveryFileInsideIsTheOneInExamples) {
   for (const EmbeddedFile& file : embedded_files()) {
     const std::string inside(file.bytes.begin(), file.bytes.end());
     EXPECT_EQ(inside, bytes_of(KNOTWAVE_SOURCE_DIR "/examples/" + std::string(file.name)));
+  }
+}
+
+// The list in apps/render/CMakeLists.txt is written by hand.
+TEST(Demo, EveryPatchCurveBankAndScoreOfExamplesIsInside) {
+  for (const char* folder : {"banks", "curves", "patches", "scores"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(KNOTWAVE_SOURCE_DIR "/examples/" +
+                                                                 std::string(folder))) {
+      const std::string name = std::string(folder) + "/" + entry.path().filename().string();
+      const auto files = embedded_files();
+      EXPECT_TRUE(std::any_of(files.begin(), files.end(),
+                              [&](const EmbeddedFile& file) { return file.name == name; }))
+          << name << " is missing in apps/render/CMakeLists.txt";
+    }
   }
 }
 

@@ -1,90 +1,27 @@
 // SPDX-License-Identifier: MIT
 // The General MIDI bank with real songs: finite, unclipped without any limiter, sensibly loud by
 // ITU-R BS.1770 (libebur128), ending in silence.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include <ebur128.h>
 #include <gtest/gtest.h>
 
 #include "knotwave/io/midi_file.h"
 
+#include "apps/loudness_meter.h"
 #include "support/corpus.h"
-#include "support/program.h"
 
 namespace {
 
-using knotwave::support::run_program;
+using knotwave::render::kMeterRateHz;
+using knotwave::render::Measure;
+using knotwave::render::measure;
 
 constexpr const char* kBank = KNOTWAVE_SOURCE_DIR "/examples/banks/general-midi.toml";
-constexpr unsigned kRateHz = 48000;
-
-struct Measure {
-  int exit_code = -1;
-  std::string err;
-  std::size_t frames = 0;
-  bool finite = true;
-  double peak = 0;
-  double end_peak = 0;  ///< of the last millisecond
-  double loudness_lufs = -HUGE_VAL;
-  double cpu_s = 0;
-};
-
-/// Renders to a pipe and measures on the way; nothing is kept.
-class Meter {
- public:
-  Meter() : state_(ebur128_init(2, kRateHz, EBUR128_MODE_I)) {}
-  ~Meter() { ebur128_destroy(&state_); }
-  Meter(const Meter&) = delete;
-  Meter& operator=(const Meter&) = delete;
-
-  void add(std::span<const char> bytes, Measure& m) {
-    pending_.insert(pending_.end(), bytes.begin(), bytes.end());
-    const std::size_t frames = pending_.size() / 8;
-    samples_.resize(2 * frames);
-    std::memcpy(samples_.data(), pending_.data(), frames * 8);
-    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(frames * 8));
-    ebur128_add_frames_float(state_, samples_.data(), frames);
-    for (const float x : samples_) {
-      m.finite = m.finite && std::isfinite(x);
-      m.peak = std::max(m.peak, static_cast<double>(std::abs(x)));
-      tail_[tail_at_++ % std::size(tail_)] = x;
-    }
-    m.frames += frames;
-  }
-
-  void finish(Measure& m) {
-    ebur128_loudness_global(state_, &m.loudness_lufs);
-    for (const float x : tail_) m.end_peak = std::max(m.end_peak, double(std::abs(x)));
-  }
-
- private:
-  ebur128_state* state_;
-  std::vector<char> pending_;
-  std::vector<float> samples_;
-  float tail_[2 * kRateHz / 1000] = {};
-  std::size_t tail_at_ = 0;
-};
-
-Measure measure(const std::string& song) {
-  Measure m;
-  Meter meter;
-  knotwave::support::ProgramOptions options;
-  options.timeout_s = 600;
-  options.on_output = [&](std::span<const char> bytes) { meter.add(bytes, m); };
-  const auto run = run_program({"knotwave-render", kBank, song, "-o", "-", "--quiet"}, options);
-  meter.finish(m);
-  m.exit_code = run.exit_code;
-  m.err = run.err;
-  m.cpu_s = run.cpu_s;
-  return m;
-}
-
 bool sounds_a_note(const std::string& path) {
   const auto song = knotwave::io::read_midi_file(path);
   if (!song) return false;
@@ -97,25 +34,25 @@ bool sounds_a_note(const std::string& path) {
 double song_seconds(const std::string& path) {
   const auto song = knotwave::io::read_midi_file(path);
   if (!song) return 0;
-  knotwave::io::TickClock clock(*song, kRateHz);
-  return static_cast<double>(clock.at(song->length_ticks).sample) / kRateHz;
+  knotwave::io::TickClock clock(*song, kMeterRateHz);
+  return static_cast<double>(clock.at(song->length_ticks).sample) / kMeterRateHz;
 }
 
 /// Renders each file, checks it, and prints a line of totals.
 void check_songs(const std::vector<std::string>& songs) {
   double seconds = 0, cpu_s = 0, quietest = 0, loudest = -100, highest = 0;
   for (const auto& song : songs) {
-    const Measure m = measure(song);
+    const Measure m = measure(kBank, song);
     ASSERT_EQ(m.exit_code, 0) << song << "\n" << m.err;
     EXPECT_TRUE(m.finite) << song;
     EXPECT_LT(m.peak, 1.0) << song;
     EXPECT_LT(m.end_peak, 1e-3) << song << " does not end in silence";
-    seconds += static_cast<double>(m.frames) / kRateHz;
+    seconds += m.seconds();
     cpu_s += m.cpu_s;
     highest = std::max(highest, m.peak);
     std::printf("%-40s %6.1f s %7.2f LUFS peak %6.2f dBFS\n",
-                std::filesystem::path(song).filename().c_str(),
-                static_cast<double>(m.frames) / kRateHz, m.loudness_lufs, 20 * std::log10(m.peak));
+                std::filesystem::path(song).filename().c_str(), m.seconds(), m.loudness_lufs,
+                m.peak_dbfs());
     if (!sounds_a_note(song)) {
       EXPECT_EQ(m.peak, 0) << song << " has no note";
       continue;

@@ -11,7 +11,7 @@ namespace knotwave::render {
 namespace {
 
 constexpr int kBarCells = 30;
-constexpr double kLongestLeft_s = 99 * 3600;
+constexpr double kLongestLeftSeconds = 99 * 3600;
 
 std::string bar(double share) {
   const int cells = static_cast<int>(share * kBarCells);
@@ -26,8 +26,8 @@ std::string bar(double share) {
 std::string progress_line(double done_s, double total_s, double elapsed_s) {
   const double share = total_s > 0 ? std::clamp(done_s / total_s, 0.0, 1.0) : 1;
   const double factor = elapsed_s > 0 ? done_s / elapsed_s : 0;
-  const double left_s =
-      share > 0 ? std::min(elapsed_s * (1 - share) / share, kLongestLeft_s) : kLongestLeft_s;
+  const double left_s = share > 0 ? std::min(elapsed_s * (1 - share) / share, kLongestLeftSeconds)
+                                  : kLongestLeftSeconds;
   const int whole_left = static_cast<int>(std::ceil(left_s));
   char text[160];
   std::snprintf(text, sizeof text, "[%s] %3d %%  %.1f of %.1f s  %.1fx  %d:%02d left",

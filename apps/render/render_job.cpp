@@ -22,10 +22,16 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr int kMidiChannels = 16;
-constexpr double kLongestAutoTail_s = 30;
+constexpr double kLongestAutoTailSeconds = 30;
 /// Silence is looked for on this grid of samples after the song's end, whatever the block size, so
 /// that --block does not decide where the file ends.
 constexpr std::int64_t kTailGridFrames = 1024;
+
+/// channel-01 to channel-16.
+std::string stem_name(int channel) {
+  const std::string number = std::to_string(channel + 1);
+  return (number.size() < 2 ? "channel-0" : "channel-") + number;
+}
 
 std::string seconds_text(double seconds) { return fixed(seconds, 1) + " s"; }
 
@@ -55,7 +61,7 @@ class RenderJob {
     return static_cast<std::int64_t>(std::floor(seconds * options_.rate_hz + 0.5));
   }
   std::int64_t longest_tail() const {
-    return options_.tail_s ? frames_of(*options_.tail_s) : frames_of(kLongestAutoTail_s);
+    return options_.tail_s ? frames_of(*options_.tail_s) : frames_of(kLongestAutoTailSeconds);
   }
 
   const RenderOptions& options_;
@@ -128,12 +134,11 @@ Result<void> RenderJob::open_stems() {
     return fail(ErrorCode::io_failed,
                 "cannot make the folder '" + options_.stems + "': " + code.message());
   }
-  stem_samples_.resize(2 * kMidiChannels * left_.size());
+  stem_samples_.resize(2 * std::size_t{kMidiChannels} * left_.size());
   const std::string ending = fs::path(options_.output).extension() == ".flac" ? ".flac" : ".wav";
   for (int channel = 0; channel < kMidiChannels; ++channel) {
     if ((feed_.channels() >> channel & 1) == 0) continue;
-    const std::string number = std::to_string(channel + 1);
-    const std::string name = "channel-" + std::string(2 - number.size(), '0') + number + ending;
+    const std::string name = stem_name(channel) + ending;
     const std::uint64_t seed = options_.seed + static_cast<std::uint64_t>(channel) + 1;
     auto sink = SoundSink::create(sink_config((fs::path(options_.stems) / name).string(), seed));
     if (!sink) return std::move(sink).error();
@@ -228,7 +233,7 @@ void RenderJob::add_closing_warnings(RenderReport& report) const {
     report.warnings.push_back(report.path + ": warning: " + what);
   };
   if (still_sounding_) {
-    add("the sound was cut " + seconds_text(kLongestAutoTail_s) + " after the song's end");
+    add("the sound was cut " + seconds_text(kLongestAutoTailSeconds) + " after the song's end");
   }
   if (report.clipped_samples > 0) {
     add(std::to_string(report.clipped_samples) +

@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
                     cursor);
   }
 
-  std::vector<float> stereo(2 * kFrames);
+  std::vector<float> stereo(2 * std::size_t{kFrames});
   for (std::size_t i = 0; i < kFrames; ++i) {
     const double cycles = 440.0 * static_cast<double>(i) / kRateHz;
     const double tone = 0.5 * base::sin_cos_cycles(cycles).sin;

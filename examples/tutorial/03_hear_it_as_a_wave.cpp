@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
   dsp::TableOscillator oscillator;
   oscillator.start(base::Phase{}, 0);
   const std::vector<base::Phase> steps = glide();
-  std::vector<float> left(kFrames), right(kFrames), stereo(2 * kFrames);
+  std::vector<float> left(kFrames), right(kFrames), stereo(2 * std::size_t{kFrames});
   oscillator.render(*tables, steps, {}, {}, left, right);
   for (std::size_t i = 0; i < kFrames; ++i) {
     stereo[2 * i] = 0.25f * left[i];

@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   if (!engine) return complain(engine.error());
 
   const engine::Event notes[] = {note_on(0, 60, 70), note_on(0.5, 67, 70), note_on(1, 76, 120)};
-  constexpr std::size_t kFrames = 3 * kRateHz;
+  constexpr std::size_t kFrames = std::size_t{3} * kRateHz;
   std::vector<float> left(kFrames), right(kFrames), stereo(2 * kFrames);
   // One block of three seconds or many of 64 samples: the bits are the same.
   (*engine)->process(notes, left, right);

@@ -285,7 +285,7 @@ Result<Song> parse_midi(std::span<const std::byte> bytes, std::string_view sourc
 Result<Song> read_midi_file(const std::string& path) {
   const auto text = base::read_file(path, kMaxMidiFileBytes);
   if (!text) return text.error();
-  return parse_midi(std::as_bytes(std::span(text->data(), text->size())), path);
+  return parse_midi(std::as_bytes(std::span(*text)), path);
 }
 
 }  // namespace knotwave::io

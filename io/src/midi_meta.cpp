@@ -49,7 +49,8 @@ void take_meter(const MetaEvent& event, Song& song) {
 void check_key(const MetaEvent& event, Song& song) {
   bool is_valid = event.content.size() == 2;
   if (is_valid) {
-    const int sharps = static_cast<std::int8_t>(content_byte(event, 0));
+    const int byte = content_byte(event, 0);
+    const int sharps = byte < 128 ? byte : byte - 256;
     is_valid = sharps >= -7 && sharps <= 7 && content_byte(event, 1) <= 1;
   }
   if (!is_valid) leave_out(event, "key signature out of range", song);

@@ -97,11 +97,11 @@ void Envelope::join(const EnvelopeProgram& program, const curves::JoinProgram& s
   const double value = curve.at_u(section.u_join, 0, controls);
   const double slope = curve.slope_at_u(section.u_join, 0, controls);
   const double wanted = from.slope_per_sample / u_per_sample_;
-  deltas_ = program.joins_slope() ? section.join_from(value, slope, from.value, wanted)
-                                  : section.join_c0_from(value, from.value);
+  deltas_ = section.moves_p1 || section.is_vertical
+                ? section.join_from(value, slope, from.value, wanted)
+                : section.join_c0_from(value, from.value);
   if (deltas_.limited) ++limited_joins_;
-  // A 2-D curve that begins vertically has no slope to keep.
-  const bool lacks = program.joins_slope() ? deltas_.limited && section.moves_p1 : true;
+  const bool lacks = section.moves_p1 ? deltas_.limited : !section.is_vertical;
   const double kept = slope + deltas_.dp0 * section.basis.slope_at_u(section.u_join, 0) +
                       deltas_.dp1 * section.basis.slope_at_u(section.u_join, 1);
   set_brake(section, from.value, kept, lacks ? wanted : kept, section.u_basis_end - section.u_join);
@@ -128,15 +128,17 @@ void Envelope::start(const curves::JoinProgram& section, base::SampleTime time) 
 
 // The slope of the section is `kept`; what lacks to `wanted` is played by a brake of such a length
 // that the sum stays inside the hull. With room r from the value to the hull, the section stays
-// r R0(u) away from it, because its other points are inside, and R0(u) >= 1 - f u where R0 is
-// convex: so a brake of peak b that ends by u with b + r f u <= r is safe. Without weights it
-// always is; otherwise the clamp in rounded() has the last word.
+// r B0(u) away from it, because its other points are inside and those that follow keep their share
+// of r; and B0(u) >= 1 - f u with f its slope where it is convex, or 1 / its length where it is
+// not. So a brake of peak b that ends by u with b + r f u <= r is safe. Without weights it always
+// is; otherwise the clamp in rounded() has the last word.
 void Envelope::set_brake(const curves::JoinProgram& section, double value, double kept,
                          double wanted, double longest) KNOTWAVE_RT {
   brake_slope_ = wanted - kept;
   brake_u_ = longest;
   const double room = brake_slope_ > 0 ? section.high - value : value - section.low;
-  const double fall = -section.basis.slope_at_u(section.u_join, 0);
+  const double fall = std::max(-section.basis.slope_at_u(section.u_join, 0),
+                               1 / (section.u_basis_end - section.u_join));
   const double steepest = std::abs(brake_slope_) * kBrakePeak + room * fall;
   if (room > 0 && steepest > 0) {
     brake_u_ = std::min(room / steepest, longest);

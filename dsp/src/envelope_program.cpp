@@ -84,7 +84,6 @@ Result<EnvelopeProgram> EnvelopeProgram::create(const curves::NurbsCurve& curve,
   envelope.program_ = std::move(*program);
   const double u_min = envelope.program_.u_min(), u_max = envelope.program_.u_max();
   envelope.u_per_second_ = (curve.dim() == 1 ? u_max - u_min : 1.0) / spec.seconds;
-  envelope.joins_slope_ = curve.degree() > 1;
   envelope.end_value_ = envelope.program_.at_u(u_max);
   auto start = curves::compile_join(curve, u_min, spec.compile);
   if (!start) return start.error();

@@ -329,7 +329,7 @@ TEST(CompileJoin, BeginsWithTheValueAndSlopeAskedAndLeavesTheTailAlone) {
     } else {
       ++limited;
       const double p1 = join->p1 + deltas.dp1;
-      EXPECT_TRUE(curve.degree() == 1 || std::abs(p1 - join->low) < 1e-15 ||
+      EXPECT_TRUE(curve.degree() <= 2 || std::abs(p1 - join->low) < 1e-15 ||
                   std::abs(p1 - join->high) < 1e-15);
     }
     for (double tail = join->u_basis_end; tail <= curve.u_max(); tail += length / 50) {
@@ -358,6 +358,58 @@ TEST(CompileJoin, IsTheCurveWithItsFirstTwoPointsMoved) {
     double y;
     moved.evaluate(i / 100.0, {&y, 1});
     EXPECT_NEAR(joined(*program, *join, deltas, i / 100.0), y, 1e-14);
+  }
+}
+
+TEST(CompileJoin, LaterPointsFollowTheFirstByTheirShareAndStayInTheHull) {
+  // Level with P0: all of its step; half way to an edge of the hull 0..1: half; at an edge: none.
+  const NurbsCurve drawn = line({0.4, 0.3, 0.4, 0.7, 0.2, 1, 0, 0.6}, 7);
+  const double shares[] = {1, 0, 1, 0.5, 0.5, 0, 0, 0};
+  const auto program = compile_function(drawn);
+  const auto join = compile_join(drawn, 0);
+  ASSERT_TRUE(program && join);
+  for (const double value : {0.0, 0.1, 0.4, 0.8, 1.0}) {
+    const auto deltas = join->join(value, 0);
+    CurveSpec spec = drawn.spec();
+    for (std::size_t i = 0; i < spec.points.size(); ++i) {
+      spec.points[i] += deltas.dp0 * shares[i] + (i == 1 ? deltas.dp1 : 0.0);
+      EXPECT_GE(spec.points[i], -1e-15);
+      EXPECT_LE(spec.points[i], 1 + 1e-15);
+    }
+    const NurbsCurve moved = made(std::move(spec));
+    for (int i = 0; i <= 100; ++i) {
+      double y;
+      moved.evaluate(i / 100.0, {&y, 1});
+      EXPECT_NEAR(joined(*program, *join, deltas, i / 100.0), y, 1e-13);
+    }
+  }
+}
+
+TEST(CompileJoin, ASecondPointOfAQuadraticFollowsTheFirst) {
+  const NurbsCurve drawn = line({0, 0.25, 1}, 2);
+  const auto program = compile_function(drawn);
+  const auto join = compile_join(drawn, 0);
+  ASSERT_TRUE(program && join);
+  EXPECT_FALSE(join->moves_p1);
+  EXPECT_FALSE(join->is_vertical);
+  const NurbsCurve moved = line({0.6, 0.7, 1}, 2);
+  for (int i = 0; i <= 100; ++i) {
+    double y;
+    moved.evaluate(i / 100.0, {&y, 1});
+    EXPECT_NEAR(joined(*program, *join, join->join_c0(0.6), i / 100.0), y, 1e-15);
+  }
+}
+
+TEST(CompileJoin, NoPointFollowsWhereControllersMoveSome) {
+  CompileOptions options;
+  options.controls = {{ControlRange::Kind::coordinate, 2, 0, 0, 1}};
+  for (const int degree : {2, 5}) {
+    const auto join = compile_join(line({0, 0, 0.1, 1, 1, 1}, degree), 0, options);
+    ASSERT_TRUE(join);
+    EXPECT_TRUE(join->moves_p1);
+    const double u = 0.5 * join->u_basis_end;
+    const auto plain = compile_join(line({0, 0, 0.1, 1, 1, 1}, degree), 0);
+    EXPECT_LT(join->basis.at_u(u, 0), plain->basis.at_u(u, 0));
   }
 }
 

@@ -73,6 +73,44 @@ TEST(ShaperProgram, MeanIsTheExactIntegralForAnyGap) {
   std::printf("worst error %.1f dB\n", 20 * std::log10(worst + 1e-30));
 }
 
+TEST(ShaperProgram, ACurveDrawnAsXAndYIsReadByItsX) {
+  // An S with handles: x(t) and y(t) are cubics, y over x is none of both.
+  CurveSpec spec;
+  spec.degree = 3;
+  spec.dim = 2;
+  spec.points = {-1, -0.9, -0.2, -0.9, -0.3, 0.1, 0, 0.2, 0.4, 0.3, 0.1, 1, 1, 0.8};
+  spec.knots = {0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2};
+  const NurbsCurve drawn = NurbsCurve::create(spec).value();
+  const auto program = ShaperProgram::create(drawn);
+  ASSERT_TRUE(program) << program.error().message;
+  EXPECT_LT(program->max_error(), kMinus130Db);
+  double area = 0, last_x = -1, last_y = -0.9;  // the integral of y dx along the drawn curve
+  constexpr int kSteps = 200000;
+  for (int i = 1; i <= kSteps; ++i) {
+    double xy[2];
+    drawn.evaluate(2.0 * i / kSteps, xy);
+    if (i % 1000 == 0) {
+      EXPECT_NEAR(program->at(xy[0]), xy[1], kMinus130Db) << xy[0];
+    }
+    area += (xy[0] - last_x) * (xy[1] + last_y) / 2;
+    last_x = xy[0];
+    last_y = xy[1];
+  }
+  EXPECT_NEAR(program->mean(-1, 1), area / 2, kMinus130Db);
+  EXPECT_EQ(program->at(-3), -0.9);
+  EXPECT_EQ(program->at(3), 0.8);
+}
+
+TEST(ShaperProgram, ACurveWhoseXGoesBackIsRefused) {
+  CurveSpec spec;
+  spec.name = "back";
+  spec.dim = 2;
+  spec.points = {-1, -1, 1.5, 0, -1.5, 0, 1, 1};
+  const auto program = ShaperProgram::create(NurbsCurve::create(spec).value());
+  ASSERT_FALSE(program);
+  EXPECT_EQ(program.error().code, knotwave::ErrorCode::not_a_function);
+}
+
 TEST(ShaperProgram, MeanOfARationalCurveIsItsIntegralWithinMinus130Db) {
   const NurbsCurve curve =
       curve_of({-1, -0.9, 0, 0.9, 1}, 3, {-1, -1, -1, -1, 0.1, 1, 1, 1, 1}, {1, 5, 0.3, 4, 1});

@@ -45,12 +45,14 @@ Result<CurveProgram> compile_parametric(const NurbsCurve& curve,
 Result<CurveProgram> compile_polynomial(const NurbsCurve& curve,
                                         const CompileOptions& options = {});
 
-/// What it takes to start a section of a curve from any value and slope: the first two (rational)
-/// basis functions of the section [u_join, u_end], as programs. A join at value y0 and slope s
-/// plays
+/// What it takes to start a section of a curve from any value and slope, as programs: B0 moves the
+/// first control point P0 and those that follow it, B1 the second, P1. A join at value y0 and slope
+/// s plays
 ///   program(u) + dp0 * basis0(u) + dp1 * basis1(u),
 /// which begins at y0 with slope s and, past the first p spans of the section, is the program to
-/// the bit (both bases are exactly 0 there).
+/// the bit (both bases are exactly 0 there). P2 .. P(p-2) follow P0 by a share: all of its step if
+/// level with it, nothing at the hull's edges, so that a join is no rougher than the curve is drawn
+/// and no point leaves the hull. docs/compile.md, Joins.
 struct JoinProgram {
   double u_join = 0;
   CurveProgram basis;        ///< dim 2: basis0, basis1, over [u_join, u_end]
@@ -58,8 +60,11 @@ struct JoinProgram {
   double p0 = 0, p1 = 0;     ///< first two control points of the section
   double slope_factor = 1;   ///< slope at u_join by u = slope_factor * (p1 - p0); 0: see moves_p1
   double low = 0, high = 1;  ///< hull that p1 is limited to
-  bool moves_p1 = true;      ///< false for degree 1, where p1 is a corner, and where a 2-D curve
-                             ///< begins vertically: joins are C0 then, and slope_factor is 0
+  /// False for degree 1, where P1 is a corner; for degree 2, where the slope at the other end hangs
+  /// on P1 as well (it follows P0 by its share; with controls it moves); and where is_vertical.
+  /// Joins are C0 then, and slope_factor is 0.
+  bool moves_p1 = true;
+  bool is_vertical = false;  ///< a 2-D curve that begins vertically has no slope to keep
 
   struct Deltas {
     double dp0 = 0;

@@ -41,8 +41,6 @@ class EnvelopeProgram {
   bool has_sustain() const KNOTWAVE_RT { return spec_.sustain_u >= program_.u_min(); }
   bool has_loop() const KNOTWAVE_RT { return spec_.loop_end_u > spec_.loop_start_u; }
   double u_per_second() const KNOTWAVE_RT { return u_per_second_; }
-  /// Not for straight lines (degree 1): they join their value, a brake plays the slope.
-  bool joins_slope() const KNOTWAVE_RT { return joins_slope_; }
   double end_value() const KNOTWAVE_RT { return end_value_; }  ///< what it rests at
 
  private:
@@ -51,15 +49,14 @@ class EnvelopeProgram {
   curves::JoinProgram start_join_, release_join_;
   double u_per_second_ = 1;
   bool has_release_ = false;
-  bool joins_slope_ = true;
   double end_value_ = 0;
 };
 
 /// One voice's envelope. Gate times carry a fraction of a sample; the value is a function of time:
-///   y(n) = program(place) + dp0 R0(age) + dp1 R1(age) + brake(age),
+///   y(n) = program(place) + dp0 B0(age) + dp1 B1(age) + brake(age),
 /// where place and age run along u from the last gate, place wraps at the loop and stops at the
-/// sustain knot. R0 and R1 belong to the join (curves/compile.h) and are exactly 0 once it is over.
-/// The brake plays what slope the hull did not let P1 take, or a straight line has no point for: it
+/// sustain knot. B0 and B1 belong to the join (curves/compile.h) and are exactly 0 once it is over.
+/// The brake plays what slope the hull did not let P1 take, or degree 1 and 2 have no point for: it
 /// is as long as the hull allows. Calls come in order of time; one program plays until the envelope
 /// is idle or reset.
 class Envelope {

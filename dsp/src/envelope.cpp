@@ -216,11 +216,9 @@ void Envelope::render_chunk(const EnvelopeProgram& program, std::int64_t first,
     }
     curve.render(std::span<const double>(u).first(n), std::span(here).first(control_count), out,
                  cursor_);
-  } else if (is_rest) {
-    std::fill(out.begin(), out.end(), curve.at_u(last_place));
-  } else if (last_place == last_u) {  // neither loop nor sustain in this chunk
+  } else if (!is_rest && last_place == last_u) {  // neither loop nor sustain in this chunk
     curve.render(run, out, cursor_);
-  } else if (place(program, run.at(0)) == last_place && !program.has_loop()) {  // all held
+  } else if (is_rest || (place(program, run.at(0)) == last_place && !program.has_loop())) {
     std::fill(out.begin(), out.end(), curve.at_u(last_place));
   } else {
     std::array<double, kChunk> u;

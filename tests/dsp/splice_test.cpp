@@ -115,12 +115,28 @@ std::vector<Gate> random_gates(std::mt19937_64& random, int count) {
   return gates;
 }
 
+// One attack, out of the window by the time of the retrigger, and most often a release between.
+// (Two attacks in one window are up to 3 dB more than one, joined or not.)
+std::vector<Gate> attack_and_retrigger(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto fraction = [&] { return static_cast<std::uint32_t>(random()); };
+  std::vector<Gate> gates = {{{10000, fraction()}, true}};
+  std::int64_t sample = 10000 + static_cast<std::int64_t>(kRate * (0.05 + 0.3 * unit(random)));
+  if (unit(random) < 0.7) {
+    gates.push_back({{sample, fraction()}, false});
+    sample += static_cast<std::int64_t>(kRate * (0.001 + 0.25 * unit(random) * unit(random)));
+  }
+  gates.push_back({{sample, fraction()}, true});
+  return gates;
+}
+
 struct Worst {
   double rest_db = -400, retrigger_db = -400;
   int limited = 0;
 };
 
-Worst worst_of(const EnvelopeProgram& program, int count) {
+template <class Gates>
+Worst worst_of(const EnvelopeProgram& program, int count, const Gates& gates_of) {
   std::mt19937_64 random(knotwave::support::test_seed());
   std::uniform_real_distribution<double> unit(0, 1);
   Worst worst;
@@ -129,11 +145,16 @@ Worst worst_of(const EnvelopeProgram& program, int count) {
     worst.rest_db = std::max(worst.rest_db, splice_db(program, {gate}, i / 16.0));
   }
   for (int i = 0; i < count; ++i) {
-    const auto gates = random_gates(random, 2 + i % 3);
+    const std::vector<Gate> gates = gates_of(random, i);
     const double db = splice_db(program, gates, unit(random), &worst.limited);
     worst.retrigger_db = std::max(worst.retrigger_db, db);
   }
   return worst;
+}
+
+Worst worst_of(const EnvelopeProgram& program, int count) {
+  return worst_of(program, count,
+                  [](auto& random, int i) { return random_gates(random, 2 + i % 3); });
 }
 
 void report(double attack_s, const Worst& worst) {
@@ -195,7 +216,8 @@ TEST(Splice, ShortAttacksOfAnyShapeAreNoWorseThanFromRest) {
     for (int i = 0; i < 14 * knotwave::support::test_count(4); ++i) {
       const int degree = 1 + i % 7;
       const EnvelopeProgram program = random_attack(random, degree, i / 7 % 2 == 0, attack_s);
-      const Worst worst = worst_of(program, 6);
+      const Worst worst =
+          worst_of(program, 6, [&](auto&, int) { return attack_and_retrigger(random); });
       const double floor_db = std::max(worst.rest_db, -111.0);
       most = std::max(most, worst.retrigger_db - floor_db);
       EXPECT_LT(worst.retrigger_db, floor_db + 1.5) << "degree " << degree << ", " << attack_s;

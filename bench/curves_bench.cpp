@@ -31,8 +31,8 @@ NurbsCurve curve_of(int degree, bool rational) {
 
 void report(benchmark::State& state) {
   using benchmark::Counter;
-  state.counters["time/sample"] =
-      Counter(static_cast<double>(kSamples) * static_cast<double>(state.iterations()),
+  state.counters["ns/sample"] =
+      Counter(1e-9 * static_cast<double>(kSamples) * static_cast<double>(state.iterations()),
               Counter::kIsRate | Counter::kInvert);
 }
 

@@ -28,7 +28,7 @@ for module in base curves dsp engine io; do pkg-config --validate "knotwave-$mod
   "$source/tests/build/outside/main.cpp" -o "$work/outside" $(pkg-config --libs knotwave-engine knotwave-io)
 check pkg-config "$("$work/outside")"
 
-if find_error=$(cmake -S "$source/tests/build/outside" -B "$work/none" -DCMAKE_PREFIX_PATH="$work/prefix" \
+if find_error=$(cmake -S "$source/tests/build/outside" -B "$work/none" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" \
   -DKNOTWAVE_TEST_COMPONENT=no_such_part 2>&1); then
   echo "a component that is not there was found"; exit 1
 fi

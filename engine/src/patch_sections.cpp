@@ -16,6 +16,7 @@ constexpr double kMostBeats = 1024;
 template <class Item>
 std::vector<std::string_view> names_of(const std::vector<Item>& items) {
   std::vector<std::string_view> names;
+  names.reserve(items.size());
   for (const Item& item : items) names.push_back(item.name);
   return names;
 }
@@ -247,6 +248,7 @@ void PatchReader::read_crossfade() {
   if (between == nullptr || between->items.size() != 2) {
     reader.fail_at(between == nullptr ? *table : *between, ErrorCode::missing_key,
                    "'between' must name two sources: between = [\"a\", \"b\"]");
+    return keep(reader.finish());
   }
   int* const ends[2] = {&patch_.crossfade_a, &patch_.crossfade_b};
   for (std::size_t i = 0; i < 2 && reader.ok(); ++i) {

@@ -36,8 +36,8 @@ using knotwave::dsp::ShaperProgram;
 constexpr double kMinus130Db = 3.16e-7;
 constexpr std::size_t kCount = 700;
 // Weight of point 1 and the place of point 2.
-const std::vector<ControlRange> kRanges = {{ControlRange::Kind::weight, 1, 0, 0.25, 8},
-                                           {ControlRange::Kind::coordinate, 2, 0, -1, 2}};
+const std::vector<ControlRange> ranges = {{ControlRange::Kind::weight, 1, 0, 0.25, 8},
+                                          {ControlRange::Kind::coordinate, 2, 0, -1, 2}};
 
 NurbsCurve curve_with(double weight, double point) {
   CurveSpec spec;
@@ -51,7 +51,7 @@ NurbsCurve rest_curve() { return curve_with(1, 0.5); }
 
 CompileOptions moving() {
   CompileOptions options;
-  options.controls = kRanges;
+  options.controls = ranges;
   return options;
 }
 double value_of(const NurbsCurve& curve, double u) {
@@ -140,7 +140,7 @@ TEST(MovedCurves, ALawOfTwoCoordinatesMovesToo) {
 }
 
 TEST(MovedCurves, AShapersMeanIsTheIntegralOfTheMovedCurve) {
-  const auto program = ShaperProgram::create(rest_curve(), kRanges).value();
+  const auto program = ShaperProgram::create(rest_curve(), ranges).value();
   EXPECT_LT(program.max_error(), kMinus130Db);
   std::mt19937_64 random(knotwave::support::test_seed());
   std::uniform_real_distribution<double> unit(0, 1);
@@ -164,7 +164,7 @@ TEST(MovedCurves, AShapersMeanIsTheIntegralOfTheMovedCurve) {
 }
 
 TEST(MovedCurves, AShaperAtRestIsTheShaperOfTheCurveAsItIsDrawn) {
-  const auto moves = ShaperProgram::create(rest_curve(), kRanges).value();
+  const auto moves = ShaperProgram::create(rest_curve(), ranges).value();
   const auto still = ShaperProgram::create(rest_curve()).value();
   EXPECT_EQ(moves.control_count(), 2);
   EXPECT_EQ(still.control_count(), 0);
@@ -209,7 +209,7 @@ TEST(MovedCurves, AShaperWhoseWeightsMoveTooFarIsRefusedWithWhatToDo) {
 
 TEST(MovedCurves, BlockSizeDoesNotMatter) {
   const CurveProgram curve = compile_function(rest_curve(), moving()).value();
-  const auto shaper_program = ShaperProgram::create(rest_curve(), kRanges).value();
+  const auto shaper_program = ShaperProgram::create(rest_curve(), ranges).value();
   Movement move;
   move.weight[333] = std::numeric_limits<double>::quiet_NaN();
   const LfoSpec spec{.rate_hz = 333};
@@ -242,7 +242,7 @@ TEST(MovedCurves, BlockSizeDoesNotMatter) {
 TEST(MovedCurves, NothingAllocates) {
   const CurveProgram curve = compile_function(rest_curve(), moving()).value();
   const auto law = CrossfadeLaw::create(rest_curve(), moving()).value();
-  const auto shaper_program = ShaperProgram::create(rest_curve(), kRanges).value();
+  const auto shaper_program = ShaperProgram::create(rest_curve(), ranges).value();
   const Movement move;
   const auto controls = move.from(0);
   std::vector<double> y(kCount), position(kCount, 0.3);

@@ -53,13 +53,13 @@ struct Fault {
 std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
 
 // An even number of points between -1 and 1.
-const std::string kManyPoints = [] {
+std::string many_points() {
   std::string points = "[curves.many]\ndegree = 3\npoints = [-1";
   for (int i = 0; i < 60; ++i) points += i % 2 == 0 ? ", 1" : ", -1";
   return points + "]\n";
-}();
+}
 
-const Fault kFaults[] = {
+constexpr Fault kFaults[] = {
     {"AnEnvelopeWhoseTimeStandsStill", "[envelopes.b]\nseconds = 2\ncurve = 'upright'\n",
      ErrorCode::empty_domain, "p.toml:20:9: error: envelope 'b': "},
     {"AnLfoWhoseTimeStandsStill", "[lfos.w]\ncurve = 'upright'\n", ErrorCode::empty_domain,
@@ -113,7 +113,7 @@ class CompileFault : public testing::TestWithParam<Fault> {};
 TEST_P(CompileFault, IsToldWhereItIsWritten) {
   const Fault& fault = GetParam();
   std::string tables = fault.tables;
-  if (tables.find("'many'") != std::string::npos) tables += kManyPoints;
+  if (tables.find("'many'") != std::string::npos) tables += many_points();
   const Error error = error_of(std::string(kHead) + tables);
   EXPECT_EQ(error.code, fault.code);
   EXPECT_THAT(error.to_string(), testing::StartsWith(fault.report));

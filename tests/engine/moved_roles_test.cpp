@@ -44,8 +44,8 @@ std::string patch_with(const Role& role, const std::string& weights, const std::
   return with(kPlain, role.lines) + "[curves.shape]\ndegree = 3\npoints = " + points +
          "\nweights = " + weights + "\n" + role.tables + maps;
 }
-const std::string kPoints = "[0, 0.1, 0.9, 1]", kWeights = "[1, 1, 2, 1]";
-const std::string kMoves =
+const std::string rest_points = "[0, 0.1, 0.9, 1]", rest_weights = "[1, 1, 2, 1]";
+const std::string both_move =
     "[[maps]]\nfrom = 'mod'\nto = 'curve.shape.weight.1'\nlow = 0.5\nhigh = 4\nsmooth_s = 0.01\n"
     "[[maps]]\nfrom = 'cc20'\nto = 'curve.shape.point.2'\nlow = -0.5\nhigh = 0.9\n";
 
@@ -76,16 +76,17 @@ class MovedRole : public testing::TestWithParam<Role> {};
 TEST_P(MovedRole, ANumberThatStandsStillIsThatNumberWrittenInTheFile) {
   const Role& role = GetParam();
   const std::vector<Event> at_end = {control(0, 0, 1, 127), control(0, 0, 20, 0)};
-  const Sound moved = sound_of(patch_with(role, kWeights, kPoints, kMoves), two_notes(at_end));
+  const Sound moved =
+      sound_of(patch_with(role, rest_weights, rest_points, both_move), two_notes(at_end));
   const Sound written =
       sound_of(patch_with(role, "[1, 4, 2, 1]", "[0, 0.1, -0.5, 1]", ""), two_notes({}));
-  const Sound other = sound_of(patch_with(role, kWeights, kPoints, ""), two_notes({}));
+  const Sound other = sound_of(patch_with(role, rest_weights, rest_points, ""), two_notes({}));
   EXPECT_LE(most_apart(moved, written), 2e-6);
   EXPECT_GT(most_apart(moved, other), 1e-3);
 }
 
 TEST_P(MovedRole, MovingItWhileItSoundsIsHeardAndNoBlockLengthIs) {
-  const std::string patch = patch_with(GetParam(), kWeights, kPoints, kMoves);
+  const std::string patch = patch_with(GetParam(), rest_weights, rest_points, both_move);
   std::vector<Event> events = two_notes({control(0, 0, 1, 18), control(0, 0, 20, 127)});
   const Sound still = sound_of(patch, events);
   events.push_back(control(5000, 0, 1, 127));

@@ -45,55 +45,57 @@ std::vector<Event> octave(std::vector<Event> before, std::int64_t first_off = 24
   before.insert(first_off < kSecondNote ? before.end() : before.end() - 1, on(kSecondNote, 0, 69));
   return before;
 }
-const Event kTime = control(0, 0, kPortamentoTime, kSecond);
-const Event kOn = control(0, 0, kPortamento, 127);
-const Event kOff = control(0, 0, kPortamento, 0);
-const double kHalfway = 440 / std::sqrt(2.0);
+const Event time_control = control(0, 0, kPortamentoTime, kSecond);
+const Event switch_on = control(0, 0, kPortamento, 127);
+const Event switch_off = control(0, 0, kPortamento, 0);
+const double halfway_hz = 440 / std::sqrt(2.0);
 
 TEST(Portamento, TheSwitchGlidesEveryNoteInTheTimeOfControlFive) {
-  const Played glide = played("", octave({kTime, kOn}));
-  EXPECT_NEAR(glide.hz_at(kSecondNote + kMiddle), kHalfway, 2);
+  const Played glide = played("", octave({time_control, switch_on}));
+  EXPECT_NEAR(glide.hz_at(kSecondNote + kMiddle), halfway_hz, 2);
   EXPECT_NEAR(glide.hz_at(kSecondNote + 2 * kMiddle + 500), 440, 0.01);
-  EXPECT_NEAR(played("", octave({kTime})).hz_at(kSecondNote + 2000), 440, 0.01);
-  EXPECT_NEAR(played("", octave({kOn})).hz_at(kSecondNote + 2000), 440, 0.01);  // in no time
+  EXPECT_NEAR(played("", octave({time_control})).hz_at(kSecondNote + 2000), 440, 0.01);
+  EXPECT_NEAR(played("", octave({switch_on})).hz_at(kSecondNote + 2000), 440, 0.01);  // in no time
 }
 
 TEST(Portamento, AGlideOfThePatchHoldsUntilAMessageSaysOtherwise) {
   constexpr std::string_view kOwn = "glide_s = 0.5";
-  EXPECT_NEAR(played(kOwn, octave({})).hz_at(kSecondNote + 12000), kHalfway, 2);
-  EXPECT_NEAR(played(kOwn, octave({kOn})).hz_at(kSecondNote + 12000), kHalfway, 2);
-  EXPECT_NEAR(played(kOwn, octave({kTime})).hz_at(kSecondNote + kMiddle), kHalfway, 2);
-  EXPECT_NEAR(played(kOwn, octave({kOff})).hz_at(kSecondNote + 2000), 440, 0.01);
+  EXPECT_NEAR(played(kOwn, octave({})).hz_at(kSecondNote + 12000), halfway_hz, 2);
+  EXPECT_NEAR(played(kOwn, octave({switch_on})).hz_at(kSecondNote + 12000), halfway_hz, 2);
+  EXPECT_NEAR(played(kOwn, octave({time_control})).hz_at(kSecondNote + kMiddle), halfway_hz, 2);
+  EXPECT_NEAR(played(kOwn, octave({switch_off})).hz_at(kSecondNote + 2000), 440, 0.01);
   EXPECT_NEAR(played(kOwn, octave({control(0, 0, kPortamentoTime, 0)})).hz_at(kSecondNote + 2000),
               440, 0.01);
 }
 
 TEST(Portamento, ResetAllControllersGivesTheSwitchBackToThePatch) {
   const Event reset = control(0, 0, kResetControllers, 0);
-  EXPECT_TRUE(played("", octave({kTime, kOn, reset})).sound == played("", octave({})).sound);
-  EXPECT_TRUE(played("glide_s = 0.5", octave({kOff, reset})).sound ==
+  EXPECT_TRUE(played("", octave({time_control, switch_on, reset})).sound ==
+              played("", octave({})).sound);
+  EXPECT_TRUE(played("glide_s = 0.5", octave({switch_off, reset})).sound ==
               played("glide_s = 0.5", octave({})).sound);
 }
 
 TEST(Portamento, TheSwitchGlidesALegatoPatchWithoutATieToo) {
   constexpr std::string_view kLegato = "mode = 'legato'\nglide_s = 0.5";
   EXPECT_NEAR(played(kLegato, octave({})).hz_at(kSecondNote + 2000), 440, 0.01);
-  EXPECT_NEAR(played(kLegato, octave({kOn})).hz_at(kSecondNote + 12000), kHalfway, 2);
-  EXPECT_NEAR(played(kLegato, octave({kOff}, 60000)).hz_at(kSecondNote + 2000), 440, 0.01);
+  EXPECT_NEAR(played(kLegato, octave({switch_on})).hz_at(kSecondNote + 12000), halfway_hz, 2);
+  EXPECT_NEAR(played(kLegato, octave({switch_off}, 60000)).hz_at(kSecondNote + 2000), 440, 0.01);
 }
 
 TEST(Portamento, ControlEightyFourNamesWhereTheNextNoteAloneComesFrom) {
   const Event source = control(0, 0, kPortamentoControl, 57);
-  const Played glide = played("", {kTime, kOff, source, on(0, 0, 69)});  // whatever the switch says
-  EXPECT_NEAR(glide.hz_at(kMiddle), kHalfway, 2);
+  const Played glide =
+      played("", {time_control, switch_off, source, on(0, 0, 69)});  // whatever the switch says
+  EXPECT_NEAR(glide.hz_at(kMiddle), halfway_hz, 2);
   EXPECT_NEAR(glide.hz_at(2 * kMiddle + 500), 440, 0.01);
   const Played next =
-      played("", {kTime, source, on(0, 0, 69), off(100, 0, 69), on(kSecondNote, 0, 69)});
+      played("", {time_control, source, on(0, 0, 69), off(100, 0, 69), on(kSecondNote, 0, 69)});
   EXPECT_NEAR(next.hz_at(kSecondNote + 2000), 440, 0.01);
 }
 
 TEST(Portamento, AVoiceThatStillSoundsTheSourceGoesOnToTheNewNote) {
-  const std::vector<Event> events = {kTime,
+  const std::vector<Event> events = {time_control,
                                      on(0, 0, 57),
                                      control(kSecondNote, 0, kPortamentoControl, 57),
                                      on(kSecondNote, 0, 69, 1),
@@ -101,7 +103,7 @@ TEST(Portamento, AVoiceThatStillSoundsTheSourceGoesOnToTheNewNote) {
                                      off(60000, 0, 69)};
   const Played tied = played("", events);
   EXPECT_EQ(tied.counters.voices_peak, 1);
-  EXPECT_NEAR(tied.hz_at(kSecondNote + kMiddle), kHalfway, 2);
+  EXPECT_NEAR(tied.hz_at(kSecondNote + kMiddle), halfway_hz, 2);
   EXPECT_NEAR(tied.hz_at(57000), 440, 0.01);
   // Neither struck again nor as soft as its velocity, and its own note-off ends it.
   EXPECT_NEAR(peak(tied.sound.left, 55000, 59000), peak(tied.sound.left, 2000, 4800), 2e-3);
@@ -110,18 +112,18 @@ TEST(Portamento, AVoiceThatStillSoundsTheSourceGoesOnToTheNewNote) {
 
 TEST(Portamento, AMonoVoiceIsTiedToItsSourceAndLeftByOthers) {
   const auto from = [](int source) {
-    return std::vector<Event>{kTime, on(0, 0, 57),
+    return std::vector<Event>{time_control, on(0, 0, 57),
                               control(kSecondNote, 0, kPortamentoControl, source),
                               on(kSecondNote, 0, 69)};
   };
-  EXPECT_NEAR(played("mode = 'mono'", from(57)).hz_at(kSecondNote + kMiddle), kHalfway, 2);
+  EXPECT_NEAR(played("mode = 'mono'", from(57)).hz_at(kSecondNote + kMiddle), halfway_hz, 2);
   EXPECT_NEAR(played("mode = 'mono'", from(81)).hz_at(kSecondNote + kMiddle), 440 * std::sqrt(2.0),
               3);
 }
 
 TEST(Portamento, TheLengthOfABlockIsNotHeard) {
   const std::vector<Event> events = {control(0, 0, kPortamentoTime, 20),
-                                     kOn,
+                                     switch_on,
                                      on(0, 0, 57),
                                      on(301, 0, 69),
                                      control(555, 0, kPortamentoControl, 69),

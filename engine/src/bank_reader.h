@@ -34,7 +34,7 @@ class BankReader {
   int patch_index(TableReader& reader, const Node& at, const std::string& path);
   void add(TableReader& reader, const Node& at, const BankEntry& entry, int patch);
 
-  void keep(Result<void> result) {
+  void keep(const Result<void>& result) {
     if (!error_ && !result) error_ = result.error();
   }
 

@@ -93,7 +93,7 @@ class PatchReader {
   std::vector<const Node::Member*> named_tables(std::string_view section, int most);
 
   // The first error of all is kept; later sections are then not read.
-  void keep(Result<void> result) {
+  void keep(const Result<void>& result) {
     if (!error_ && !result) error_ = result.error();
   }
   void fail_at(int line, int column, ErrorCode code, std::string message);

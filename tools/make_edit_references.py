@@ -137,10 +137,23 @@ def removals(rng):
                     for u, side in places(rng, inside(curve) + [0.3])])
 
 
+def finer(rng):
+    """refine and elevate_degree: the same values."""
+    for degree in (1, 2, 3, 6, 10):
+        for turn, kind in enumerate(KINDS):
+            curve = random_curve(rng, degree, 2, kind, rational=turn % 2 == 0)
+            knots = [0.3] * (1 + degree // 2) + [rng.random() for _ in range(5)]
+            looks = [(u, side, value(curve, u, side))
+                     for u, side in places(rng, inside(curve) + knots)]
+            yield "refine", knots, [curve], looks
+            yield "elevate_degree", [1 + rng.randrange(5)], [curve], looks
+
+
 def cases():
     yield from paces(random.Random(3))
     yield from segments(random.Random(4))
     yield from removals(random.Random(5))
+    yield from finer(random.Random(6))
 
 
 def text():

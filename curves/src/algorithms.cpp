@@ -34,35 +34,6 @@ CurveSpec empty_spec_of(const NurbsCurve& curve) {
   return spec;
 }
 
-// One period again of an expanded periodic curve of n + p points whose p seam points may be stale:
-// `first_true` is the index from which n points are right.
-CurveSpec one_period(const HomogeneousCurve& all, int first_true, CurveSpec spec) {
-  CurveSpec full = spec;
-  all.round_to(full);
-  const int p = all.degree, n = static_cast<int>(all.points.size()) - p, dim = all.dim;
-  spec.periodic = true;
-  spec.points.resize(index_of(n * dim));
-  spec.weights.resize(index_of(n));
-  for (int i = first_true; i < first_true + n; ++i) {
-    for (int c = 0; c < dim; ++c) {
-      spec.points[index_of(i % n * dim + c)] = full.points[index_of(i * dim + c)];
-    }
-    spec.weights[index_of(i % n)] = full.weights[index_of(i)];
-  }
-  spec.knots.assign(full.knots.begin() + p, full.knots.begin() + p + n + 1);
-  return spec;
-}
-
-// Knots in a periodic curve: inserted in one period of the expanded curve. The points of one period
-// from the first blended one on are right, the p others are their images.
-Result<NurbsCurve> insert_periodic(const NurbsCurve& curve, double u, int times) {
-  HomogeneousCurve all(curve);
-  const int span = all.span_at(all.domain.knot(u), Side::right);
-  for (int i = 0; i < times; ++i) all.insert(all.domain.knot(u));
-  const int first_true = std::min(span - all.degree + 1, all.degree);
-  return NurbsCurve::create(one_period(all, first_true, empty_spec_of(curve)));
-}
-
 // How often the knot u is there; on the seam of a periodic curve both ends count as one place.
 int multiplicity_of(const NurbsCurve& curve, double u) {
   const std::vector<double> knots = curve.spec().knots;
@@ -71,9 +42,15 @@ int multiplicity_of(const NurbsCurve& curve, double u) {
   return static_cast<int>(at_u + std::count(knots.begin(), knots.end(), curve.u_max()) - 1);
 }
 
-}  // namespace
+Error too_often(const NurbsCurve& curve, double u, int times) {
+  return fail(ErrorCode::knot_multiplicity,
+              "curve '" + curve.name() + "': " + std::to_string(times) +
+                  " more knots at u = " + number_text(u) + " beside " +
+                  std::to_string(multiplicity_of(curve, u)) + ", degree " +
+                  std::to_string(curve.degree()) + " allows " + std::to_string(curve.degree()));
+}
 
-Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times) {
+Result<void> check_insertion(const NurbsCurve& curve, double u, int times) {
   if (!inside(curve, u)) return outside(curve, u, "outside");
   if (curve.is_periodic() && u == curve.u_max()) u = curve.u_min();
   const bool at_end = !curve.is_periodic() && (u == curve.u_min() || u == curve.u_max());
@@ -81,20 +58,48 @@ Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times) {
   if (at_end && multiplicity >= curve.degree()) {
     return outside(curve, u, "a clamped end, knots go inside");
   }
-  if (times < 0 || multiplicity + times > curve.degree()) {
-    return fail(ErrorCode::knot_multiplicity,
-                "curve '" + curve.name() + "': " + std::to_string(times) + " more knots at u = " +
-                    number_text(u) + " beside " + std::to_string(multiplicity) + ", degree " +
-                    std::to_string(curve.degree()) + " allows " + std::to_string(curve.degree()));
-  }
-  if (times == 0) return curve;
-  if (curve.is_periodic()) return insert_periodic(curve, u, times);
+  if (multiplicity + times > curve.degree()) return too_often(curve, u, times);
+  return {};
+}
+
+// All at once, and rounded once.
+Result<NurbsCurve> inserted(const NurbsCurve& curve, const std::vector<double>& knots) {
+  if (knots.empty()) return curve;
   HomogeneousCurve all(curve);
-  for (int i = 0; i < times; ++i) all.insert(all.domain.knot(u));
+  for (double u : knots) {
+    if (curve.is_periodic() && u == curve.u_max()) u = curve.u_min();
+    all.insert_and_repeat(all.domain.knot(u));
+  }
   CurveSpec spec = empty_spec_of(curve);
+  spec.periodic = curve.is_periodic();
   spec.jumps.assign(curve.jumps().begin(), curve.jumps().end());
-  all.round_to(spec);
+  all.write_to(spec);
   return NurbsCurve::create(std::move(spec));
+}
+
+}  // namespace
+
+Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times) {
+  if (times < 0) return too_often(curve, u, times);
+  if (auto good = check_insertion(curve, u, times); !good) return good.error();
+  return inserted(curve, std::vector<double>(index_of(times), u));
+}
+
+Result<NurbsCurve> refine(const NurbsCurve& curve, std::span<const double> knots) {
+  std::vector<double> sorted(knots.begin(), knots.end());
+  for (double& u : sorted) {
+    if (!inside(curve, u)) return outside(curve, u, "outside");
+    if (curve.is_periodic() && u == curve.u_max()) u = curve.u_min();
+  }
+  std::sort(sorted.begin(), sorted.end());
+  for (auto run = sorted.begin(); run != sorted.end();) {
+    const auto end = std::upper_bound(run, sorted.end(), *run);
+    if (auto good = check_insertion(curve, *run, static_cast<int>(end - run)); !good) {
+      return good.error();
+    }
+    run = end;
+  }
+  return inserted(curve, sorted);
 }
 
 Result<NurbsCurve> sub_curve(const NurbsCurve& curve, double u_a, double u_b) {
@@ -105,25 +110,11 @@ Result<NurbsCurve> sub_curve(const NurbsCurve& curve, double u_a, double u_b) {
                                              "': from u = " + number_text(u_a) + " to " +
                                              number_text(u_b) + " there is nothing");
   }
-  const int p = curve.degree();
-  HomogeneousCurve all(curve);
-  const Knot knot_a = all.domain.knot(u_a), knot_b = all.domain.knot(u_b);
-  for (const Knot& u : {knot_a, knot_b}) {
-    for (int have = all.multiplicity(u); have < p; ++have) all.insert(u);
-  }
-  // Spans p..: the first one right of u_a and the last one left of u_b hold the end points.
-  const int first = all.span_at(knot_a, Side::right);
-  const int last = all.span_at(knot_b, Side::left);
-  HomogeneousCurve part = all;
-  part.points.assign(all.points.begin() + (first - p), all.points.begin() + last + 1);
-  part.knots.assign(index_of(p + 1), knot_a);
-  part.knots.insert(part.knots.end(), all.knots.begin() + first + 1, all.knots.begin() + last + 1);
-  part.knots.insert(part.knots.end(), index_of(p + 1), knot_b);
   CurveSpec spec = empty_spec_of(curve);
   for (const double jump : curve.jumps()) {
     if (jump > u_a && jump < u_b) spec.jumps.push_back(jump);
   }
-  part.round_to(spec);
+  HomogeneousCurve(curve).clamped_part(u_a, u_b).round_to(spec);
   return NurbsCurve::create(std::move(spec));
 }
 

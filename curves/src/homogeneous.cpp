@@ -71,6 +71,52 @@ void HomogeneousCurve::insert(Knot u) {
   knots.insert(std::upper_bound(knots.begin(), knots.end(), u), u);
 }
 
+void HomogeneousCurve::insert_and_repeat(Knot u) {
+  const int span = span_at(u, Side::right);
+  insert(u);
+  if (domain.periodic) repeat_period(std::min(span - degree + 1, degree));
+}
+
+void HomogeneousCurve::repeat_period(int first_true) {
+  const int p = degree, n = static_cast<int>(points.size()) - p;
+  for (int i = 0; i < n + p; ++i) {
+    const int image = i < first_true ? i + n : i >= first_true + n ? i - n : i;
+    points[index_of(i)] = points[index_of(image)];
+  }
+  for (int i = 0; i < p; ++i) {
+    Knot before = knots[index_of(i + n)];
+    --before.period;
+    knots[index_of(i)] = before;
+  }
+  for (int i = p + n + 1; i < n + 2 * p + 1; ++i) {
+    Knot after = knots[index_of(i - n)];
+    ++after.period;
+    knots[index_of(i)] = after;
+  }
+}
+
+HomogeneousCurve HomogeneousCurve::clamped_part(double low, double high) const {
+  const int p = degree;
+  HomogeneousCurve all = *this;
+  const Knot from = domain.knot(low), to = domain.knot(high);
+  for (const Knot& u : {from, to}) {
+    for (int have = all.multiplicity(u); have < p; ++have) all.insert(u);
+  }
+  // Spans p..: the first one right of `low` and the last one left of `high` hold the end points.
+  const int first = all.span_at(from, Side::right), last = all.span_at(to, Side::left);
+  HomogeneousCurve part;
+  part.degree = p;
+  part.dim = dim;
+  part.domain = {low, high, false};
+  part.points.assign(all.points.begin() + (first - p), all.points.begin() + last + 1);
+  part.knots.assign(index_of(p + 1), Knot{0, low});
+  for (int i = first + 1; i <= last; ++i) {
+    part.knots.push_back({0, domain.rounded(all.knots[index_of(i)])});  // in the domain: exact
+  }
+  part.knots.insert(part.knots.end(), index_of(p + 1), Knot{0, high});
+  return part;
+}
+
 void HomogeneousCurve::round_to(CurveSpec& spec) const {
   spec.knots.clear();
   for (const Knot& knot : knots) spec.knots.push_back(domain.rounded(knot));

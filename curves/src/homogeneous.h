@@ -42,8 +42,15 @@ struct HomogeneousCurve {
   HomogeneousCurve points_between(int first, int last) const;
   int span_at(Knot u, Side side) const { return span_of<Knot>(knots, degree, u, side); }
   int multiplicity(Knot u) const;
-  /// Boehm, u in the domain. (A5.1 once.)
+  /// Boehm, u in the domain. (A5.1 once.) What a periodic curve has twice is stale then.
   void insert(Knot u);
+  /// The same, and what a periodic curve has twice is written again.
+  void insert_and_repeat(Knot u);
+  /// The points and knots that a periodic curve has twice, written again: right are the n points
+  /// from `first_true` on, and the knots of the domain.
+  void repeat_period(int first_true);
+  /// The part over [low, high], clamped, its knots in no period. At a jump the inner side.
+  HomogeneousCurve clamped_part(double low, double high) const;
   /// Into the numbers of a spec.
   void round_to(CurveSpec& spec) const;
   /// The same as create() reads it: a periodic curve's points and knots once.

@@ -68,26 +68,6 @@ DoubleDouble& channel(HomogeneousPoint& point, std::size_t c) {
 }
 constexpr std::size_t kChannels = kMaxDim + 1;
 
-// The p points and knots that a periodic curve has twice, written again from those that count:
-// n points from `first_true` on, and the knots from the start of the domain to its end.
-void repeat_period(HomogeneousCurve& curve, int first_true) {
-  const int p = curve.degree, n = static_cast<int>(curve.points.size()) - p;
-  for (int i = 0; i < n + p; ++i) {
-    const int image = i < first_true ? i + n : i >= first_true + n ? i - n : i;
-    curve.points[index_of(i)] = curve.points[index_of(image)];
-  }
-  for (int i = 0; i < p; ++i) {
-    Knot before = curve.knots[index_of(i + n)];
-    --before.period;
-    curve.knots[index_of(i)] = before;
-  }
-  for (int i = p + n + 1; i < n + 2 * p + 1; ++i) {
-    Knot after = curve.knots[index_of(i - n)];
-    ++after.period;
-    curve.knots[index_of(i)] = after;
-  }
-}
-
 }  // namespace
 
 KnotRun run_of(const HomogeneousCurve& curve, double u) {
@@ -162,7 +142,7 @@ bool remove_knots_of(HomogeneousCurve& curve, KnotRun run, int times) {
   const auto stale = points.begin() + first + 1 + static_cast<long>(unknowns);
   points.erase(stale, stale + t);
   curve.knots.erase(curve.knots.begin() + r - t + 1, curve.knots.begin() + r + 1);
-  if (periodic) repeat_period(curve, std::min(first + 1, p));
+  if (periodic) curve.repeat_period(std::min(first + 1, p));
   return true;
 }
 

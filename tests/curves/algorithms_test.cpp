@@ -184,6 +184,50 @@ TEST(InsertKnot, OutsideIsAnErrorWithBothNumbers) {
   EXPECT_FALSE(insert_knot(curve_of(2, {0, 1, -1, 2}), std::nan("")));
 }
 
+TEST(Refine, KeepsAnyCurveWithin4UlpOfTheLargestPointHoweverManyKnots) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  for (int round = 0; round < support::test_count(1000); ++round) {
+    const NurbsCurve curve = random_curve(dice);
+    std::vector<double> knots;
+    for (int i = dice.below(12); i >= 0; --i) {
+      const double u = dice.between(curve.u_min(), curve.u_max());
+      const int times = std::min(1 + dice.below(3), room_at(curve, u));
+      if (u > curve.u_min()) knots.insert(knots.end(), std::size_t(times), u);
+    }
+    const auto finer = refine(curve, knots);
+    ASSERT_TRUE(finer) << finer.error().message;
+    std::vector<double> expected = curve.spec().knots;
+    expected.insert(expected.end(), knots.begin(), knots.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(finer->spec().knots, expected);
+    EXPECT_EQ(finer->is_periodic(), curve.is_periodic());
+    worst = std::max(worst, distance_ulp(dice, curve, *finer, curve.u_min(), curve.u_max()));
+    std::reverse(knots.begin(), knots.end());
+    EXPECT_EQ(*refine(curve, knots), *finer);
+  }
+  std::printf("worst %.2f ulp of max|P|\n", worst);
+  EXPECT_LE(worst, 4);
+}
+
+TEST(Refine, KeepsJumpsAndInsertsAllOrNothing) {
+  CurveSpec spec;
+  spec.name = "saw";
+  spec.degree = 1;
+  spec.points = {0, 1, -1, 0};
+  spec.knots = {0, 0, 0.5, 0.5, 1, 1};
+  spec.jumps = {0.5};
+  const NurbsCurve saw = *NurbsCurve::create(spec);
+  EXPECT_THAT(refine(saw, std::vector{0.75, 0.25})->points(),
+              testing::ElementsAre(0, 0.5, 1, -1, -0.5, 0));
+  EXPECT_EQ(*refine(saw, {}), saw);
+  EXPECT_EQ(refine(saw, std::vector{0.75, 0.5}).error().message,
+            "curve 'saw': 1 more knots at u = 0.5 beside 2, degree 1 allows 1");
+  EXPECT_EQ(refine(saw, std::vector{0.75, 0.75}).error().code, ErrorCode::knot_multiplicity);
+  EXPECT_EQ(refine(saw, std::vector{1.0}).error().code, ErrorCode::parameter_out_of_range);
+  EXPECT_EQ(refine(saw, std::vector{std::nan("")}).error().code, ErrorCode::parameter_out_of_range);
+}
+
 TEST(SubCurve, IsThePartWithin4UlpOfTheLargestPoint) {
   EXPECT_LE(worst_of_parts(support::test_count(10'000)), 4);
 }
@@ -268,6 +312,31 @@ TEST(ElevateDegree, KeepsAnyCurveWithin4UlpOfTheLargestPoint) {
 
 TEST(ElevateDegreeStress, KeepsAnyCurveWithin4UlpOfTheLargestPoint) {
   EXPECT_LE(worst_of_elevations(support::test_count(100'000)), 4);
+}
+
+TEST(ElevateDegree, ByMoreThanOneIsRoundedOnce) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  for (int round = 0; round < support::test_count(500); ++round) {
+    const NurbsCurve curve = random_curve(dice, 1 + dice.below(curves::kMaxDegree));
+    const int times = dice.below(curves::kMaxDegree - curve.degree() + 1);
+    const auto raised = elevate_degree(curve, times);
+    ASSERT_TRUE(raised) << raised.error().message;
+    EXPECT_EQ(raised->degree(), curve.degree() + times);
+    EXPECT_EQ(raised->is_periodic(), curve.is_periodic());
+    worst = std::max(worst, distance_ulp(dice, curve, *raised, curve.u_min(), curve.u_max()));
+  }
+  std::printf("worst %.2f ulp of max|P|\n", worst);
+  EXPECT_LE(worst, 4);
+}
+
+TEST(ElevateDegree, ReportsTimesThatAreNone) {
+  const NurbsCurve line = curve_of(1, {0, 1});
+  EXPECT_EQ(*elevate_degree(line, 0), line);
+  EXPECT_EQ(elevate_degree(line, -1).error().code, ErrorCode::value_out_of_range);
+  EXPECT_EQ(elevate_degree(line, 15).error().message,
+            "curve 'example': degree 16 is outside 1..15");
+  EXPECT_EQ(elevate_degree(line, 2147483647).error().code, ErrorCode::degree_out_of_range);
 }
 
 TEST(ElevateDegree, KeepsJumpsAndCorners) {

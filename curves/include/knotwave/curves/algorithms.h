@@ -2,6 +2,7 @@
 // Edits that do not change the curve: exact in the reals, within 4 ulp of max|P| in double. Source:
 // Piegl & Tiller, The NURBS Book, 2nd ed.: A5.1 insertion, A5.6 decomposition.
 #pragma once
+#include <span>
 #include <vector>
 
 #include "knotwave/curves/nurbs_curve.h"
@@ -23,6 +24,11 @@ struct BezierSegment {
 /// result would exceed p). A periodic curve stays periodic.
 Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times = 1);
 
+/// Inserts all of `knots`, in any order, repeated ones as often as they are there; rounded once,
+/// however many. [control] Errors: those of insert_knot(), of which nothing is then inserted. A
+/// jump keeps its multiplicity. O(m n) for m knots.
+Result<NurbsCurve> refine(const NurbsCurve& curve, std::span<const double> knots);
+
 /// The part over [u_a, u_b], clamped at both ends. [control] Errors: parameter_out_of_range,
 /// empty_domain. At a jump the part takes the side that lies inside it.
 Result<NurbsCurve> sub_curve(const NurbsCurve& curve, double u_a, double u_b);
@@ -43,9 +49,10 @@ void de_casteljau(const BezierSegment& segment, double u, std::span<double> out)
 /// de Boor in homogeneous coordinates: an evaluation independent of NurbsCurve::evaluate. [any]
 void de_boor(const NurbsCurve& curve, double u, std::span<double> out) noexcept;
 
-/// Degree p + 1, same curve; an unclamped one becomes clamped, a periodic one stays periodic.
-/// [control] Errors: degree_out_of_range, too_many_points. O(n p^4).
-Result<NurbsCurve> elevate_degree(const NurbsCurve& curve);
+/// Degree p + times, same curve, rounded once; an unclamped one becomes clamped, a periodic one
+/// stays periodic. Knots of multiplicity m have m + times, jumps stay. [control] Errors:
+/// degree_out_of_range, too_many_points, value_out_of_range (times < 0).
+Result<NurbsCurve> elevate_degree(const NurbsCurve& curve, int times = 1);
 
 /// Greville abscissae [n]: the u where each control point pulls most. [control]
 std::vector<double> greville_abscissae(const NurbsCurve& curve);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "curve_input.h"
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "knotwave/base/file.h"
@@ -35,7 +37,9 @@ Result<curves::CurveSet> read_set(const std::string& path) {
 
 Reference reference_of(const std::string& text) {
   const auto hash = text.rfind('#');
-  if (hash == std::string::npos) return {text, ""};
+  std::error_code failed;
+  if (hash == std::string::npos || std::filesystem::is_regular_file(text, failed))
+    return {text, ""};
   return {text.substr(0, hash), text.substr(hash + 1)};
 }
 

@@ -20,7 +20,8 @@ Result<KnownFile> read_known_file(const std::string& path);
 /// files that hold none (banks, envelope patches).
 Result<curves::CurveSet> read_set(const std::string& path);
 
-/// "file.toml#name" as its two halves; no name without a '#'.
+/// "file.toml#name" as its two halves; no name without a '#', or where a file is called so in
+/// whole.
 struct Reference {
   std::string path;
   std::string name;

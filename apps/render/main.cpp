@@ -15,6 +15,7 @@
 #include "command_line/exit_codes.h"
 #include "command_line/messages.h"
 #include "options.h"
+#include "output_places.h"
 #include "render_job.h"
 
 namespace {
@@ -84,6 +85,8 @@ int run(const RenderOptions& options) {
   if (options.baseline_simd) curves::set_simd_level(curves::SimdLevel::baseline);
   const auto input = read_input(options);
   if (!input) return say(input.error());
+  const std::string overlap = output_overlap(options, *input);
+  if (!overlap.empty()) return say_usage("knotwave-render", overlap);
   if (options.check) return check(options, *input);
   auto json_file = open_json(options);
   if (!json_file) return say(json_file.error());

@@ -54,7 +54,7 @@ std::string read_tail(const std::string& text, std::optional<double>& tail_s) {
 void add_input_and_output(CLI::App& app, RenderOptions& o) {
   using namespace command_line;
   add_text(app, {"PATCH", "patch or bank to play (.toml)", ""}, o.patch);
-  add_text(app, {"SCORE", "MIDI file to play (.mid, .rmi)", ""}, o.score);
+  add_text(app, {"SCORE", "MIDI file to play (.mid, .rmi), or - for standard input", ""}, o.score);
   add_text(app,
            {"-o,--output",
             "file to write: .wav or .flac by its ending; - writes headerless 32-bit float samples, "

@@ -9,6 +9,8 @@
 namespace knotwave::render {
 namespace {
 
+constexpr const char* kStandardInput = "/dev/stdin";
+
 std::string warning_text(const std::string& file, const std::string& what) {
   return file + ": warning: " + what;
 }
@@ -61,6 +63,8 @@ Result<void> read_bank(const std::string& path, RenderInput& input) {
   if (!spec) return spec.error();
   const auto waves = read_waves(*spec, input.warnings);
   if (!waves) return waves.error();
+  for (const auto& file : spec->files) input.files.push_back({"a file the patch names,", file});
+  for (const auto& wave : *waves) input.files.push_back({"a sound the patch names,", wave.file});
   auto bank = engine::BankProgram::create(*spec, *waves);
   if (!bank) return std::move(bank).error();
   input.bank = std::move(bank).value();
@@ -69,7 +73,11 @@ Result<void> read_bank(const std::string& path, RenderInput& input) {
 
 Result<void> read_score(const std::string& path, RenderInput& input) {
   auto song = io::read_midi_file(path);
-  if (!song) return std::move(song).error();
+  if (!song) {
+    Error error = std::move(song).error();
+    if (path == kStandardInput) error.source = input.score_name;
+    return error;
+  }
   input.song = std::move(song).value();
   const std::string& name = input.score_name;
   for (const auto& warning : input.song.warnings) {
@@ -95,17 +103,29 @@ Result<RenderInput> read_files(const std::string& patch, const std::string& scor
 }  // namespace
 
 Result<RenderInput> read_input(const RenderOptions& options) {
-  if (options.demo.empty()) return read_files(options.patch, options.score, options.score);
+  if (options.demo.empty()) {
+    const bool is_piped = options.score == "-";
+    auto input = read_files(options.patch, is_piped ? kStandardInput : options.score,
+                            is_piped ? "standard input" : options.score);
+    if (!input) return input;
+    input->files.push_back({"the patch", options.patch});
+    input->files.push_back({"the score", options.score});
+    return input;
+  }
   const auto demo = DemoFiles::unpack(options.demo);
   if (!demo) return demo.error();
-  return read_files(demo->patch(), demo->score(), options.demo);
+  auto input = read_files(demo->patch(), demo->score(), options.demo);
+  if (input) input->files.clear();  // they are gone
+  return input;
 }
 
 std::string check_line(const RenderOptions& options, const RenderInput& input) {
   const EventFeed feed(input.song, options.rate_hz);
   const double seconds = static_cast<double>(feed.end().sample) / options.rate_hz;
   std::string line = input.score_name + ": ok: " + std::to_string(input.song.track_count) +
-                     " tracks, " + std::to_string(input.song.events.size()) + " events, " +
+                     (input.song.track_count == 1 ? " track, " : " tracks, ") +
+                     std::to_string(input.song.events.size()) +
+                     (input.song.events.size() == 1 ? " event, " : " events, ") +
                      fixed(seconds, 3) + " s";
   if (seconds > options.max_length_s) line += "; --max-length would refuse to render it";
   return io::printable(line, 4096);

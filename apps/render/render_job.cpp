@@ -14,6 +14,7 @@
 #include "knotwave/engine/engine.h"
 
 #include "event_feed.h"
+#include "output_places.h"
 #include "progress.h"
 #include "sound_sink.h"
 
@@ -21,17 +22,10 @@ namespace knotwave::render {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kMidiChannels = 16;
 constexpr double kLongestAutoTailSeconds = 30;
 /// Silence is looked for on this grid of samples after the song's end, whatever the block size, so
 /// that --block does not decide where the file ends.
 constexpr std::int64_t kTailGridFrames = 1024;
-
-/// channel-01 to channel-16.
-std::string stem_name(int channel) {
-  const std::string number = std::to_string(channel + 1);
-  return (number.size() < 2 ? "channel-0" : "channel-") + number;
-}
 
 std::string seconds_text(double seconds) { return fixed(seconds, 1) + " s"; }
 
@@ -135,12 +129,10 @@ Result<void> RenderJob::open_stems() {
                 "cannot make the folder '" + options_.stems + "': " + code.message());
   }
   stem_samples_.resize(2 * std::size_t{kMidiChannels} * left_.size());
-  const std::string ending = fs::path(options_.output).extension() == ".flac" ? ".flac" : ".wav";
   for (int channel = 0; channel < kMidiChannels; ++channel) {
     if ((feed_.channels() >> channel & 1) == 0) continue;
-    const std::string name = stem_name(channel) + ending;
     const std::uint64_t seed = options_.seed + static_cast<std::uint64_t>(channel) + 1;
-    auto sink = SoundSink::create(sink_config((fs::path(options_.stems) / name).string(), seed));
+    auto sink = SoundSink::create(sink_config(stem_path(options_, channel), seed));
     if (!sink) return std::move(sink).error();
     stems_[static_cast<std::size_t>(channel)].emplace(std::move(sink).value());
   }

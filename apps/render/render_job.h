@@ -8,14 +8,18 @@
 #include "knotwave/engine/bank_program.h"
 #include "knotwave/io/midi_file.h"
 
+#include "command_line/places.h"
 #include "options.h"
 #include "report.h"
 
 namespace knotwave::render {
 
+inline constexpr int kMidiChannels = 16;
+
 /// All that was read, checked and compiled.
 struct RenderInput {
   std::string score_name;
+  std::vector<command_line::NamedFile> files;  ///< all that were read, those of a demo left out
   std::unique_ptr<const engine::BankProgram> bank;
   io::Song song;
   std::vector<std::string> warnings;  ///< each names its file

@@ -20,7 +20,7 @@ std::string FileShelf::canonical(const std::string& path) {
   return failed ? path : found.string();
 }
 
-Result<std::string> FileShelf::read(const std::string& path) const {
+Result<std::string> FileShelf::read(const std::string& path) {
   const auto link = std::find(chain_.begin(), chain_.end(), canonical(path));
   if (link != chain_.end()) {
     return fail(ErrorCode::cyclic_reference,
@@ -28,6 +28,7 @@ Result<std::string> FileShelf::read(const std::string& path) const {
                     (link == chain_.end() - 1 ? "a file may not name itself"
                                               : "files may not name each other in a circle"));
   }
+  paths_.push_back(path);
   auto text = base::read_file(path, base::kMaxDocumentBytes);
   if (text) return text;
   return fail(text.error().code, "'" + path + "': " + text.error().message);

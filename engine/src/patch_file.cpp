@@ -64,13 +64,19 @@ Result<BankSpec> read_bank(const std::string& path) {
   if (!root) return root.error();
   const auto kind = curves::read_file_kind(*root, path);
   if (!kind) return kind.error();
-  if (*kind == curves::FileKind::bank) return BankReader(*root, path, shelf).read();
+  if (*kind == curves::FileKind::bank) {
+    auto bank = BankReader(*root, path, shelf).read();
+    if (bank) bank->files = shelf.paths();
+    return bank;
+  }
   if (*kind != curves::FileKind::patch) {
     return wrong_kind(*root, path, *kind, "a patch or a bank is needed here");
   }
   auto patch = read_patch(*root, path, shelf);
   if (!patch) return patch.error();
-  return bank_of(std::move(*patch));
+  BankSpec bank = bank_of(std::move(*patch));
+  bank.files = shelf.paths();
+  return bank;
 }
 
 }  // namespace knotwave::engine

@@ -21,9 +21,12 @@ class FileShelf {
 
   /// Text of a file named by the files in chain(); errors have no source (the caller knows the
   /// place of the name): file_not_found, io_failed, file_too_large, cyclic_reference.
-  Result<std::string> read(const std::string& path) const;
+  Result<std::string> read(const std::string& path);
   /// The curves of a file, read once. Errors of its text have its own place.
   Result<const curves::CurveSet*> curves(const std::string& path);
+
+  /// The paths of all files read() was asked for.
+  const std::vector<std::string>& paths() const { return paths_; }
 
   /// Keeps a file in the chain of those being read.
   class Link {
@@ -41,6 +44,7 @@ class FileShelf {
 
  private:
   std::vector<std::string> chain_;
+  std::vector<std::string> paths_;
   std::map<std::string, curves::CurveSet> curve_files_;
 };
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kMostSeconds = 3600;
 constexpr double kMostBeats = 1024;
+constexpr int kMinWaveFrame = 4, kMaxWaveFrame = 65536;  // what io reads as a cycle
 
 template <class Item>
 std::vector<std::string_view> names_of(const std::vector<Item>& items) {
@@ -79,7 +80,7 @@ void PatchReader::read_oscillator(const Node::Member& member) {
                      "there is no file '" + spec.wave_file + "'");
     }
   }
-  spec.wave_frame = reader.integer("wave_frame", 0, 0, 1 << 20);
+  spec.wave_frame = reader.integer("wave_frame", 0, kMinWaveFrame, kMaxWaveFrame);
   if (reader.node("wave_frame") != nullptr && reader.node("wave_file") == nullptr) {
     reader.fail_at(*reader.node("wave_frame"), ErrorCode::malformed,
                    "'wave_frame' needs a 'wave_file'");

@@ -60,6 +60,42 @@ TEST_F(RenderProgram, BlockThreadsAndSimdChangeNoSample) {
   EXPECT_EQ(hash_in(render({"-o", "out.wav", "--simd", "baseline"}).out), hash);
 }
 
+TEST_F(RenderProgram, ADashIsTheScoreOnStandardInput) {
+  const std::string hash = hash_in(render({"-o", "out.wav"}).out);
+  support::ProgramOptions options;
+  options.folder = folder_.path();
+  const std::string program = KNOTWAVE_BIN_DIR "/knotwave-render small.toml - ";
+  const auto shell = [&](const std::string& command) {
+    return support::run_program({"/bin/sh", "-c", command}, options);
+  };
+  EXPECT_EQ(hash_in(shell(program + "-o out.wav <small.mid").out), hash);
+  EXPECT_EQ(hash_in(shell("cat small.mid | " + program + "-o out.wav").out), hash);
+  EXPECT_EQ(shell(program + "--check <small.mid").out,
+            "standard input: ok: 1 track, 8 events, 1.000 s\n");
+  EXPECT_THAT(shell(program + "--check <small.toml").err, testing::StartsWith("standard input:"));
+  const auto over = shell(program + "-o a.wav --json small.mid <small.mid");
+  EXPECT_EQ(over.exit_code, 2);
+  EXPECT_THAT(over.err, HasSubstr("--json 'small.mid' would overwrite the score '-'"));
+}
+
+TEST_F(RenderProgram, AWaveFrameThatNoCycleHasIsToldWithItsPlace) {
+  render({"-o", "wave.wav"});
+  for (const auto& [frame, is_good] : {std::pair{3, false}, {4, true}, {65537, false}}) {
+    write("cut.toml",
+          "format = 1\nkind = \"patch\"\nname = \"cut\"\n[oscillators.a]\nwave_file = "
+          "\"wave.wav\"\nwave_frame = " +
+              std::to_string(frame) +
+              "\n[curves.gate]\ndegree = 1\npoints = [1, 0]\n[envelopes.amp]\ncurve = \"gate\"\n");
+    support::ProgramOptions options;
+    options.folder = folder_.path();
+    const auto done = support::run_program({"knotwave-curve", "check", "cut.toml"}, options);
+    EXPECT_EQ(done.exit_code, is_good ? 0 : 1) << done.err;
+    if (is_good) continue;
+    EXPECT_EQ(done.err, "cut.toml:6:14: error: wave_frame is " + std::to_string(frame) +
+                            "; it must be in 4 to 65536\n");
+  }
+}
+
 TEST_F(RenderProgram, TwoRunsWriteTheSameBytes) {
   for (const char* name : {"a.wav", "a.flac"}) {
     render({"-o", name, "--bits", "16"});
@@ -128,7 +164,7 @@ TEST_F(RenderProgram, ALongerSongThanMaxLengthIsRefused) {
 TEST_F(RenderProgram, CheckReadsEverythingAndWritesNothing) {
   const auto done = run({"--check", "small.toml", "small.mid"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_EQ(done.out, "small.mid: ok: 1 tracks, 8 events, 1.000 s\n");
+  EXPECT_EQ(done.out, "small.mid: ok: 1 track, 8 events, 1.000 s\n");
   write("broken.toml", "format = 1\nkind = \"patch\"\nnaem = \"x\"\n");
   const auto broken = run({"--check", "broken.toml", "small.mid"});
   EXPECT_EQ(broken.exit_code, 1);

@@ -188,6 +188,8 @@ struct BankSpec {
   int drum_channel = 10;           ///< 1..16, 0 = none
   std::vector<PatchSpec> patches;  ///< one for each different patch_file, in order of first use
   std::vector<int> entry_patch;    ///< [entries.size()] index into patches
+  /// What read_bank() read besides `source_name`: patches, curve files, tunings.
+  std::vector<std::string> files;
 };
 
 /// Reads a patch or a bank and every file it names, each once (sound files are only checked to

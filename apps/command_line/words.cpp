@@ -93,6 +93,11 @@ class WordReader {
       fault_ = "unknown option " + in_quotes(word) + "; did you mean '" + two_dashes + "'?";
     } else if (option == nullptr) {
       fault_ = "unknown option " + in_quotes(word);
+    } else if (takes_value(*option) && word.size() > 2 && word[2] == '=') {
+      const std::string value(word.substr(3));
+      fault_ = in_quotes(word) + " has a '=' behind a short name; did you mean '" +
+               std::string(word.substr(0, 2)) + " " + value + "' or '--" +
+               option->get_lnames().front() + "=" + value + "'?";
     } else if (takes_value(*option)) {
       read_option(*option, word.substr(0, 2), word.substr(2), word.size() > 2);
     } else {

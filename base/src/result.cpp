@@ -2,8 +2,10 @@
 // Names of error codes, the text of an error, and the end of a failed assertion.
 #include "knotwave/base/result.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
 namespace knotwave::base {
 
@@ -74,6 +76,30 @@ std::string printable(const std::string& text) {
   }
   return out;
 }
+
+/// `text` with its middle left out where it is longer than `most` bytes; no UTF-8 letter is cut.
+std::string shortened(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return std::string(text);
+  const auto goes_on = [&](std::size_t at) { return (text[at] & 0xC0) == 0x80; };
+  std::size_t head = most * 2 / 3, tail = text.size() - (most - head - 3);
+  while (head > 0 && goes_on(head)) --head;
+  while (tail < text.size() && goes_on(tail)) ++tail;
+  return std::string(text.substr(0, head)) + "..." + std::string(text.substr(tail));
+}
+
+/// Names come from files and may fill them: long words are cut, and so is the whole.
+std::string readable(const std::string& message) {
+  constexpr std::size_t kLongestWord = 80, kLongestMessage = 2000;
+  const std::string text = printable(shortened(message, kLongestMessage * 2));
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(" /", at), text.size());
+    out += shortened(std::string_view(text).substr(at, end - at), kLongestWord);
+    if (end < text.size()) out += text[end];
+    at = end + 1;
+  }
+  return shortened(out, kLongestMessage);
+}
 }  // namespace
 
 std::string Error::to_string() const {
@@ -88,7 +114,7 @@ std::string Error::to_string() const {
     text += "byte " + std::to_string(offset) + ":";
   }
   if (!text.empty()) text += " ";
-  return text + "error: " + printable(message);
+  return text + "error: " + readable(message);
 }
 
 }  // namespace knotwave::base

@@ -120,9 +120,11 @@ void PatchReader::read_map_sources(TableReader& reader, MapSpec& map) {
     const auto source =
         words[i]->kind == Node::Kind::string ? find_source(patch_, words[i]->text) : std::nullopt;
     if (!source) {
-      return reader.fail_at(*words[i], ErrorCode::unknown_name,
-                            "there is no source '" + words[i]->text + "'" +
-                                nearest(words[i]->text, source_words(patch_)));
+      return reader.fail_at(
+          *words[i], ErrorCode::unknown_name,
+          "there is no source '" + words[i]->text + "'" +
+              (is_controller_word(words[i]->text) ? "; controllers are cc0 to cc119"
+                                                  : nearest(words[i]->text, source_words(patch_))));
     }
     found[i] = *source;
   }

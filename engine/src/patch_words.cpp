@@ -110,6 +110,11 @@ int index_by_name(const std::vector<Item>& items, std::string_view name) {
 
 }  // namespace
 
+bool is_controller_word(std::string_view word) {
+  return word.size() > 2 && word.starts_with("cc") &&
+         word.find_first_not_of("0123456789", 2) == std::string_view::npos;
+}
+
 bool is_source_word(std::string_view word) {
   return controller_number(word) >= 0 ||
          std::any_of(std::begin(kSources), std::end(kSources),

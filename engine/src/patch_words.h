@@ -18,6 +18,8 @@ struct SourceWord {
 
 /// Whether a word means a source by itself, so that no envelope or LFO may be called so.
 bool is_source_word(std::string_view word);
+/// "cc" and a number, whether there is such a controller or not.
+bool is_controller_word(std::string_view word);
 /// Whether a word begins targets, so that no oscillator may be called so.
 bool is_target_word(std::string_view word);
 

@@ -61,6 +61,9 @@ TEST(RenderCommandLine, AMissingOrDoubleValueIsToldWithWhatIsWanted) {
                           {render_words({"--stems", ""}), "--stems needs a value: DIR"},
                           {render_words({"--stems="}), "--stems needs a value: DIR"},
                           {render_words({"--rate"}), "--rate needs a value: HZ"},
+                          {{"a.toml", "a.mid", "-o=b.wav"},
+                           "'-o=b.wav' has a '=' behind a short name; did you mean '-o b.wav' or "
+                           "'--output=b.wav'?"},
                           {render_words({"-o", "b.wav"}), "-o is given twice"},
                           {render_words({"--output=b.wav"}), "--output is given twice"},
                           {render_words({"--quiet=3"}), "--quiet takes no value, but got '3'"},

@@ -61,6 +61,22 @@ TEST(Error, TextHoldsNoControlCharacters) {
   EXPECT_EQ(error.to_string(), "x\\x09y: error: unknown key '\\x1b[2Ja\\x0a'");
 }
 
+TEST(Error, LongWordsAndMessagesLoseTheirMiddle) {
+  const std::string key(900'000, 'k');
+  const std::string text =
+      fail(ErrorCode::unknown_key, "curve: unknown key '" + key + "'").to_string();
+  EXPECT_EQ(text, "error: curve: unknown key '" + std::string(52, 'k') + "..." +
+                      std::string(23, 'k') + "'");
+  std::string names;
+  for (int i = 0; i < 1000; ++i) names += ", curve" + std::to_string(i);
+  EXPECT_LT(fail(ErrorCode::unknown_name, names).to_string().size(), 2100u);
+  const std::string path = "'/" + std::string(60, 'a') + "/" + std::string(60, 'b') + "'";
+  EXPECT_EQ(fail(ErrorCode::io_failed, path).to_string(), "error: " + path) << "a path is kept";
+  std::string umlauts;
+  for (int i = 0; i < 100; ++i) umlauts += "\xc3\xa4";
+  EXPECT_EQ(fail(ErrorCode::io_failed, "x" + umlauts).to_string().size(), 7u + 53 + 3 + 24);
+}
+
 TEST(ErrorCode, EveryCodeHasItsOwnName) {
   std::set<std::string> names;
   const int count = static_cast<int>(ErrorCode::unsupported) + 1;

@@ -72,7 +72,10 @@ bool is_closed(const NurbsCurve& curve) {
 
 Fact continuity_fact(const NurbsCurve& curve) {
   const int order = continuity_of(curve);
-  if (order == curve.degree()) return text_fact("smoothness", "one polynomial piece");
+  if (order == curve.degree()) {
+    return text_fact("smoothness",
+                     curve.is_rational() ? "one rational piece" : "one polynomial piece");
+  }
   return text_fact("smoothness", order < 0 ? "jumps" : "C" + std::to_string(order));
 }
 

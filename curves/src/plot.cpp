@@ -40,8 +40,7 @@ class CurvePicture {
   }
 
   Scene drawn() {
-    scene_.text({frame_.left, 30}, curve_.name(), kInk, 20, Shape::Anchor::start, true);
-    scene_.text({frame_.right, 30}, description_of(curve_), kAxis, 14, Shape::Anchor::end);
+    draw_title(scene_, frame_.left, frame_.right, 30, curve_.name(), description_of(curve_));
     const bool plane = traces_[0].x >= 0;
     frame_.draw(scene_, plane ? "x" : "u", plane ? "y" : "value");
     for (std::size_t i = 0; i < traces_.size(); ++i) {
@@ -96,6 +95,7 @@ class CurvePicture {
     }
     const double margin = (shows_weights() ? 0.09 : 0.05) * frame_.y.size();
     frame_.y = {frame_.y.low - margin, frame_.y.high + margin};
+    frame_.left = std::max(frame_.left, frame_.width_of_numbers() + 22);
     if (traces_[0].x < 0) return;
     frame_.x = {frame_.x.low - 0.05 * frame_.x.size(), frame_.x.high + 0.05 * frame_.x.size()};
     // A curve in a plane that goes back and forth is a shape: the same scale both ways.
@@ -158,7 +158,8 @@ class CurvePicture {
         const Trace trace = traces_[i];
         const double x = trace.x < 0 ? mark.u : value[index_of(trace.x)];
         const Point at = frame_.at(x, value[index_of(trace.y)]);
-        if (!ends) scene_.disc(at, 3.2, kWhite, kCurves[i], 1.6);
+        const bool is_seam = trace.x >= 0 && mark.u == curve_.u_min() && meets_itself();
+        if (!ends || is_seam) scene_.disc(at, 3.2, kWhite, kCurves[i], 1.6);
         if (traces_[0].x >= 0 && !ends && mark.multiplicity > 1) {
           scene_.text({at.x + 7, at.y + 14}, "x" + std::to_string(mark.multiplicity), kInk, 11);
         }
@@ -170,6 +171,14 @@ class CurvePicture {
         scene_.line({{x, frame_.bottom + 2}, {x, frame_.bottom + 11}}, kInk, 1.6);
       }
     }
+  }
+
+  // Where a closed curve in a plane begins is where it ends: a knot as the others.
+  bool meets_itself() const {
+    std::vector<double> start(index_of(curve_.dim())), end = start;
+    curve_.evaluate(curve_.u_min(), Side::right, start);
+    curve_.evaluate(curve_.u_max(), Side::left, end);
+    return start == end;
   }
 
   // The area of a point is its weight next to the others'.
@@ -191,32 +200,63 @@ class CurvePicture {
       const double radius = radius_of(i);
       scene_.disc(point, radius, {fill.red, fill.green, fill.blue, 0.9}, kWhite, 1.2);
       if (!shows_weights() || points_to_draw(trace, 0) > 24) continue;
-      const bool at_end = point.x > frame_.right - 40;
-      scene_.text({point.x + (at_end ? -radius - 3 : radius + 3), point.y - radius - 1},
-                  "w " + short_text(curve_.weights()[index_of(i)]), kInk, 11,
-                  at_end ? Shape::Anchor::end : Shape::Anchor::start);
+      draw_weight(point, radius, "w " + short_text(curve_.weights()[index_of(i)]));
     }
   }
 
-  // What the marks mean, along the lower edge.
+  // Beside its point, on the first of four sides where no other weight is; left out when there is
+  // one on each (the size of the point tells it too).
+  void draw_weight(Point point, double radius, const std::string& words) {
+    constexpr double kSize = 11;
+    const double width = text_width(words, kSize) * 1.15;  // fonts differ
+    const bool at_end = point.x > frame_.right - 40;
+    for (const bool below : {false, true}) {
+      for (const bool left : {at_end, !at_end}) {
+        const double x = point.x + (left ? -radius - 3 : radius + 3);
+        const double y = below ? point.y + radius + 10 : point.y - radius - 1;
+        const Box box{left ? x - width : x, y - kSize, left ? x : x + width, y};
+        const bool is_free = std::none_of(taken_.begin(), taken_.end(), [&](const Box& other) {
+          return box.left < other.right && other.left < box.right && box.top < other.bottom &&
+                 other.top < box.bottom;
+        });
+        if (!is_free || box.right > options_.width_px) continue;
+        taken_.push_back(box);
+        return scene_.text({x, y}, words, kInk, kSize,
+                           left ? Shape::Anchor::end : Shape::Anchor::start);
+      }
+    }
+  }
+
+  // What the marks mean, along the lower edge, in as many words as there is room for.
   void draw_legend() {
+    const bool plane = traces_[0].x >= 0;
+    std::string point = options_.control_polygon ? "control point" : "";
+    std::string knot = options_.knots ? "knot" : "";
+    const std::string more_point = shows_weights() ? ", larger with its weight" : "";
+    const std::string more_knot = plane ? "" : ", a tick for each time it is repeated";
+    const auto fits = [&](const std::string& a, const std::string& b) {
+      const double width = text_width(a, 12) + text_width(b, 12) + 38 * 2;
+      return frame_.left + width < frame_.right;
+    };
+    if (!point.empty() && fits(point + more_point, knot)) point += more_point;
+    if (!knot.empty() && fits(point, knot + more_knot)) knot += more_knot;
     double x = frame_.left;
     const double y = frame_.bottom + 47;
     const auto say = [&](const std::string& words) {
       scene_.text({x + 12, y}, words, kAxis, 12);
       x += 38 + text_width(words, 12);
     };
-    if (options_.control_polygon) {
+    if (!point.empty()) {
       scene_.disc({x + 3, y - 4}, 4, kPoint, kWhite, 1);
-      say(shows_weights() ? "control point, larger with its weight" : "control point");
+      say(point);
     }
-    if (!options_.knots) return;
-    if (traces_[0].x >= 0) {
+    if (knot.empty() || !fits(point, knot)) return;
+    if (plane) {
       scene_.disc({x + 3, y - 4}, 3.2, kWhite, kCurves[0], 1.6);
-      return say("knot");
+    } else {
+      scene_.line({{x + 3, y - 9}, {x + 3, y}}, kInk, 1.6);
     }
-    scene_.line({{x + 3, y - 9}, {x + 3, y}}, kInk, 1.6);
-    say("knot, a tick for each time it is repeated");
+    say(knot);
   }
 
   void draw_names() {
@@ -233,6 +273,10 @@ class CurvePicture {
   std::vector<Trace> traces_;
   std::vector<double> abscissae_;
   Frame frame_;
+  struct Box {
+    double left, top, right, bottom;
+  };
+  std::vector<Box> taken_;  ///< by weights
   Scene scene_;
 };
 

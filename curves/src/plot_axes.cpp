@@ -6,6 +6,17 @@
 #include <cmath>
 
 namespace knotwave::curves {
+namespace {
+
+constexpr double kTickSize = 13;
+
+double widest(const std::vector<std::string>& texts) {
+  double width = 0;
+  for (const std::string& text : texts) width = std::max(width, text_width(text, kTickSize));
+  return width;
+}
+
+}  // namespace
 
 void Range::include(double value) {
   low = std::min(low, value);
@@ -37,21 +48,83 @@ std::string short_text(double value) {
   return {text, end};
 }
 
+std::vector<std::string> tick_texts(const std::vector<double>& ticks) {
+  const double step = ticks.size() > 1 ? std::abs(ticks[1] - ticks[0]) : 0;
+  std::vector<std::string> texts(ticks.size());
+  for (int digits = 4; digits <= 17; ++digits) {
+    bool is_exact = true;
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      const double value = std::abs(ticks[i]) < 1e-6 * step ? 0.0 : ticks[i];
+      char text[32];
+      const auto end =
+          std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr;
+      texts[i].assign(text, end);
+      double read = 0;
+      std::from_chars(text, end, read);
+      is_exact = is_exact && std::abs(read - value) <= 0.01 * step;
+    }
+    if (is_exact || step == 0) break;
+  }
+  return texts;
+}
+
+std::string fitted(const std::string& text, double size, double width) {
+  if (text_width(text, size) <= width) return text;
+  std::string cut = text;
+  while (!cut.empty() && text_width(cut + "...", size) > width) cut.pop_back();
+  return cut.empty() ? "" : cut + "...";
+}
+
+void draw_title(Scene& scene, double left, double right, double y, const std::string& name,
+                const std::string& description) {
+  constexpr double kNameSize = 20, kSize = 14, kGap = 24;
+  constexpr double kBoldness = 1.1;  // bold letters are wider by as much, nearly
+  const double room = right - left - kGap;
+  const double words = text_width(description, kSize);
+  // A long name has what the description leaves, but at least half.
+  const double name_room = std::max(0.5 * room, room - words) / kBoldness;
+  const std::string shown = fitted(name, kNameSize, name_room);
+  scene.text({left, y}, shown, kInk, kNameSize, Shape::Anchor::start, true);
+  const double rest = room - kBoldness * text_width(shown, kNameSize);
+  const std::string about = fitted(description, kSize, rest);
+  if (!about.empty()) scene.text({right, y}, about, kAxis, kSize, Shape::Anchor::end);
+}
+
 bool Frame::holds(Point point) const {
   return point.x >= left - 1 && point.x <= right + 1 && point.y >= top - 1 && point.y <= bottom + 1;
 }
 
-void Frame::draw(Scene& scene, const std::string& x_name, const std::string& y_name) const {
-  for (const double tick : round_ticks(x, 10)) {
-    const Point foot = at(tick, y.low);
-    scene.line({{foot.x, top}, {foot.x, bottom}}, kFaint, 1);
-    scene.text({foot.x, bottom + 30}, short_text(tick), kInk, 13, Shape::Anchor::middle);
+std::vector<double> Frame::ticks_up() const {
+  return round_ticks(y, std::clamp(static_cast<int>((bottom - top) / 24), 2, 8));
+}
+
+std::vector<double> Frame::ticks_across() const {
+  for (int count = 10; count > 2; --count) {
+    const std::vector<double> ticks = round_ticks(x, count);
+    if (ticks.size() < 2) return ticks;
+    const double distance = at(ticks[1], y.low).x - at(ticks[0], y.low).x;
+    if (widest(tick_texts(ticks)) + 10 <= distance) return ticks;
   }
-  for (const double tick : round_ticks(y, 8)) {
-    const Point foot = at(x.low, tick);
-    const bool zero = tick == 0 && y.low < 0;
+  return round_ticks(x, 2);
+}
+
+double Frame::width_of_numbers() const { return widest(tick_texts(ticks_up())); }
+
+void Frame::draw(Scene& scene, const std::string& x_name, const std::string& y_name) const {
+  const std::vector<double> across = ticks_across();
+  const std::vector<std::string> across_texts = tick_texts(across);
+  for (std::size_t i = 0; i < across.size(); ++i) {
+    const Point foot = at(across[i], y.low);
+    scene.line({{foot.x, top}, {foot.x, bottom}}, kFaint, 1);
+    scene.text({foot.x, bottom + 30}, across_texts[i], kInk, kTickSize, Shape::Anchor::middle);
+  }
+  const std::vector<double> up = ticks_up();
+  const std::vector<std::string> up_texts = tick_texts(up);
+  for (std::size_t i = 0; i < up.size(); ++i) {
+    const Point foot = at(x.low, up[i]);
+    const bool zero = up[i] == 0 && y.low < 0;
     scene.line({{left, foot.y}, {right, foot.y}}, zero ? kAxis : kFaint, 1);
-    scene.text({left - 10, foot.y + 4.5}, short_text(tick), kInk, 13, Shape::Anchor::end);
+    scene.text({left - 10, foot.y + 4.5}, up_texts[i], kInk, kTickSize, Shape::Anchor::end);
   }
   scene.line({{left, bottom}, {right, bottom}}, kAxis, 1.2);
   scene.line({{left, top}, {left, bottom}}, kAxis, 1.2);

@@ -29,8 +29,17 @@ struct Range {
 
 /// Multiples of 1, 2 or 5 times a power of ten inside `range`, about `count` of them.
 std::vector<double> round_ticks(Range range, int count);
-/// Short text of a tick or weight: up to 4 significant digits.
+/// Short text of a weight: up to 4 significant digits.
 std::string short_text(double value);
+/// Texts of ticks: 4 significant digits, or as many as tell neighbours apart, to 1 % of their
+/// distance.
+std::vector<std::string> tick_texts(const std::vector<double>& ticks);
+
+/// `text` if it is at most `width` pixels wide, else its beginning and "...".
+std::string fitted(const std::string& text, double size, double width);
+/// A bold name at the left and, as far as there is room, a description at the right.
+void draw_title(Scene& scene, double left, double right, double y, const std::string& name,
+                const std::string& description);
 
 /// A rectangle of pixels with a range along each side.
 struct Frame {
@@ -42,8 +51,14 @@ struct Frame {
             bottom - (value_y - y.low) / y.size() * (bottom - top)};
   }
   bool holds(Point point) const;
+  /// Pixels that the numbers beside the left edge need.
+  double width_of_numbers() const;
   /// Grid, numbers and names of the axes.
   void draw(Scene& scene, const std::string& x_name, const std::string& y_name) const;
+
+ private:
+  std::vector<double> ticks_across() const;  ///< as many as have room for their numbers
+  std::vector<double> ticks_up() const;
 };
 
 /// The curve between two knots, at least `steps` lines, left limit at the end. [dim] numbers each.

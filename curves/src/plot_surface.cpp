@@ -35,8 +35,7 @@ class SurfacePicture {
   }
 
   Scene drawn() {
-    scene_.text({28, 34}, surface_.name(), kInk, 20, Shape::Anchor::start, true);
-    scene_.text({options_.width_px - 28.0, 34}, description(), kAxis, 14, Shape::Anchor::end);
+    draw_title(scene_, 28, options_.width_px - 28.0, 34, surface_.name(), description());
     draw_floor();
     draw_tiles();
     if (options_.control_polygon) draw_net();
@@ -138,28 +137,37 @@ class SurfacePicture {
     scene_.area({project(corner_of(0)), project(corner_of(1)), project(corner_of(3)),
                  project(corner_of(2))},
                 {247, 248, 250}, kAxis, 1);
-    for (const double tick : round_ticks(box_[0], 6)) {
+    const auto ticks_x = round_ticks(box_[0], 6);
+    const auto texts_x = tick_texts(ticks_x);
+    for (std::size_t i = 0; i < ticks_x.size(); ++i) {
+      const double tick = ticks_x[i];
       scene_.line(
           {project({tick, box_[1].low, box_[2].low}), project({tick, box_[1].high, box_[2].low})},
           kFaint, 1);
       const Point foot = project({tick, box_[1].low, box_[2].low});
-      scene_.text({foot.x + 2, foot.y + 18}, short_text(tick), kInk, 12, Shape::Anchor::start);
+      scene_.text({foot.x + 2, foot.y + 18}, texts_x[i], kInk, 12, Shape::Anchor::start);
     }
-    for (const double tick : round_ticks(box_[1], 5)) {
+    const auto ticks_y = round_ticks(box_[1], 5);
+    const auto texts_y = tick_texts(ticks_y);
+    for (std::size_t i = 0; i < ticks_y.size(); ++i) {
+      const double tick = ticks_y[i];
       scene_.line(
           {project({box_[0].low, tick, box_[2].low}), project({box_[0].high, tick, box_[2].low})},
           kFaint, 1);
       const Point foot = project({box_[0].low, tick, box_[2].low});
-      scene_.text({foot.x - 8, foot.y + 14}, short_text(tick), kInk, 12, Shape::Anchor::end);
+      scene_.text({foot.x - 8, foot.y + 14}, texts_y[i], kInk, 12, Shape::Anchor::end);
     }
     const Point high = project(corner_of(6)), low = project(corner_of(2));
     scene_.line({low, high}, kAxis, 1);
-    for (const double tick : round_ticks(box_[2], 5)) {
+    const auto ticks_z = round_ticks(box_[2], 5);
+    const auto texts_z = tick_texts(ticks_z);
+    for (std::size_t i = 0; i < ticks_z.size(); ++i) {
+      const double tick = ticks_z[i];
       const Point foot = project({box_[0].low, box_[1].high, tick});
       scene_.line({{foot.x - 4, foot.y}, foot}, kAxis, 1);
       // The corner below is where v ends: its number has the place.
       if (tick < box_[2].low + 0.05 * box_[2].size()) continue;
-      scene_.text({foot.x - 8, foot.y + 4}, short_text(tick), kInk, 12, Shape::Anchor::end);
+      scene_.text({foot.x - 8, foot.y + 4}, texts_z[i], kInk, 12, Shape::Anchor::end);
     }
     const Point u = project({0.5 * (box_[0].low + box_[0].high), box_[1].low, box_[2].low});
     const Point v = project({box_[0].low, 0.5 * (box_[1].low + box_[1].high), box_[2].low});

@@ -2,6 +2,7 @@
 // Pictures for terminals: Braille dots, 2 by 4 to a character.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "knotwave/curves/algorithms.h"
 #include "knotwave/curves/plot.h"
@@ -12,6 +13,13 @@ namespace knotwave::curves {
 namespace {
 
 constexpr int kMargin = 10;  // columns for the numbers on the left
+
+/// The two ends of an axis, told apart as far as the margin has room.
+std::pair<std::string, std::string> end_texts(Range range) {
+  const auto texts = tick_texts({range.low, range.high});
+  if (std::max(texts[0].size(), texts[1].size()) < kMargin) return {texts[0], texts[1]};
+  return {short_text(range.low), short_text(range.high)};
+}
 
 std::string padded(const std::string& text, std::size_t width) {
   return text.size() >= width ? text : std::string(width - text.size(), ' ') + text;
@@ -116,17 +124,15 @@ std::string plot_text(const NurbsCurve& curve, int columns, int rows) {
   } else {
     for (int c = 0; c < curve.dim(); ++c) draw_spans(dots, frame, curve, spans, -1, c);
   }
+  const auto up = end_texts(frame.y), across = end_texts(frame.x);
   std::string text = curve.name() + "  " + description_of(curve) + "\n";
   for (int y = 0; y < high; ++y) {
-    const std::string number = y == 0          ? short_text(frame.y.high)
-                               : y == high - 1 ? short_text(frame.y.low)
-                                               : "";
+    const std::string number = y == 0 ? up.second : y == high - 1 ? up.first : "";
     text += padded(number, kMargin - 1) + " │" + dots.row(y) + "\n";
   }
   text += std::string(kMargin, ' ') + "└" + knot_line(curve, inner, plane) + "\n";
-  const std::string low = short_text(frame.x.low), last = short_text(frame.x.high);
-  text += std::string(kMargin + 1, ' ') + low +
-          padded(last, static_cast<std::size_t>(inner) - low.size()) + "\n";
+  text += std::string(kMargin + 1, ' ') + across.first +
+          padded(across.second, static_cast<std::size_t>(inner) - across.first.size()) + "\n";
   return text;
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // knotwave-curve as a user runs it.
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -9,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "knotwave/base/file.h"
+#include "knotwave/curves/algorithms.h"
 #include "knotwave/curves/curve_file.h"
 
 #include "support/program.h"
@@ -154,7 +157,51 @@ TEST_F(CurveApp, InfoTellsWhatACurveIs) {
   EXPECT_THAT(arc, HasSubstr("weights        1 .. 2\n"));
   EXPECT_THAT(arc, HasSubstr("knots          0 x3, 1 x3\n"));
   EXPECT_THAT(arc, HasSubstr("function of x  no\n"));
+  EXPECT_THAT(arc, HasSubstr("smoothness     one rational piece\n"));
+  EXPECT_THAT(run({"info", file_ + "#ramp"}).out, HasSubstr("one polynomial piece\n"));
   EXPECT_THAT(run({"info", file_ + "#wave"}).out, HasSubstr("smoothness   C2\n"));
+}
+
+// docs/curves.md: the first point of a periodic cubic pulls one span before the seam.
+TEST_F(CurveApp, APeriodicCubicIsHighestWhereItsHighestPointPulls) {
+  const auto wave = *curves::parse_curves(kCurves, "text")->find_curve("wave");
+  EXPECT_EQ(greville_abscissae(wave)[0], -0.25);
+  EXPECT_EQ(greville_abscissae(wave)[1], 0);
+  EXPECT_EQ(run({"eval", file_ + "#wave", "--at", "0,0.25,0.5,0.75"}).out,
+            "0\t0.66666666666666663\n0.25\t0\n0.5\t-0.66666666666666663\n0.75\t0\n");
+}
+
+TEST_F(CurveApp, AFileWhoseNameHoldsTheMarkIsOpened) {
+  const std::string odd = folder_.file("a#arc");
+  ASSERT_TRUE(base::write_file(odd, kCurves));
+  EXPECT_EQ(run({"eval", odd + "#arc", "--at", "1"}).out, "1\t0\t1\n");
+  EXPECT_THAT(run({"info", odd}).out, HasSubstr("surface          sheet\n"));
+}
+
+// What README.md says of its bell.
+TEST_F(CurveApp, TheBellOfTheReadmeGrowsAsItSays) {
+  const auto readme = base::read_file(KNOTWAVE_SOURCE_DIR "/README.md", 1 << 20);
+  const auto tell = [this](const std::string& weight) {
+    const std::string bell = folder_.file("bell.toml");
+    EXPECT_TRUE(base::write_file(bell,
+                                 "format = 1\nkind = \"curve\"\n[curves.bell]\ndegree = 3\n"
+                                 "points = [0, 0, 1, 0, 0]\nweights = [1, 1, " +
+                                     weight + ", 1, 1]\n"));
+    std::istringstream table(run({"eval", bell, "--grid", "4000"}).out);
+    std::vector<double> values;
+    for (double u = 0, value = 0; table >> u >> value;) values.push_back(value);
+    const double height = *std::max_element(values.begin(), values.end());
+    const auto above = std::count_if(values.begin(), values.end(),
+                                     [height](double value) { return value >= height / 2; });
+    char text[40];
+    std::snprintf(text, sizeof text, "%.2f %.2f", height, double(above) / 4000);
+    return std::string(text);
+  };
+  EXPECT_EQ(tell("4"), "0.80 0.65");
+  EXPECT_EQ(tell("64"), "0.98 0.90");
+  EXPECT_THAT(*readme, HasSubstr("weights = [1, 1, 4, 1, 1]"));
+  EXPECT_THAT(*readme, HasSubstr("from 4 to 64: the bell grows from 0.80 high to 0.98, and at half "
+                                 "its height from 0.65 wide\nto 0.90."));
 }
 
 TEST_F(CurveApp, PlotWritesTheFileItsEndingAsksForOrText) {

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "knotwave/curves/plot.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <regex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -104,6 +109,105 @@ TEST(Plot, TextHasTheSizeAskedForAndTheEndsOfTheAxes) {
   EXPECT_THAT(text, HasSubstr("        1 │"));
   EXPECT_THAT(text, HasSubstr("└╨"));
   EXPECT_EQ(count_of(plot_text(hill(), 60, 10), "\n"), 11);
+}
+
+/// Every text of a picture with where it is, as its letters are drawn in a PNG.
+struct Label {
+  std::string text;
+  double left, right, base, size;
+};
+std::vector<Label> labels_of(const std::string& svg) {
+  static const std::regex form(
+      "<text x=\"([^\"]*)\" y=\"([^\"]*)\" font-size=\"([^\"]*)\" "
+      "text-anchor=\"([^\"]*)\"[^>]*>([^<]*)<");
+  std::vector<Label> labels;
+  for (auto it = std::sregex_iterator(svg.begin(), svg.end(), form); it != std::sregex_iterator();
+       ++it) {
+    const auto& part = *it;
+    Label label{part[5], std::stod(part[1]), 0, std::stod(part[2]), std::stod(part[3])};
+    const double width = 0.5 * label.size * static_cast<double>(label.text.size());
+    if (part[4] == "middle") label.left -= width / 2;
+    if (part[4] == "end") label.left -= width;
+    label.right = label.left + width;
+    labels.push_back(label);
+  }
+  return labels;
+}
+
+/// All texts lie on the page and none lies on another; letters are taken as half as wide as high.
+void expect_readable(const std::string& svg, double width) {
+  const auto labels = labels_of(svg);
+  EXPECT_GT(labels.size(), 8u);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const Label& a = labels[i];
+    EXPECT_GE(a.left, 0) << a.text;
+    EXPECT_LE(a.right, width) << a.text;
+    for (std::size_t k = 0; k < i; ++k) {
+      const Label& b = labels[k];
+      const bool is_beside = a.right <= b.left || b.right <= a.left;
+      const bool is_above = std::abs(a.base - b.base) >= 0.7 * std::min(a.size, b.size);
+      EXPECT_TRUE(is_beside || is_above) << a.text << " lies on " << b.text;
+    }
+  }
+}
+
+TEST(Plot, TextsOfSmallPicturesDoNotMeetEachOtherOrTheEdge) {
+  CurveSpec spec = decay().spec();
+  for (const std::string& name : {std::string("decay60"), std::string(64, 'm')}) {
+    spec.name = name;
+    const auto curve = *NurbsCurve::create(spec);
+    for (const auto [width, height] : {std::pair{480, 270}, {320, 240}, {960, 540}}) {
+      curves::PlotOptions options;
+      options.width_px = width;
+      options.height_px = height;
+      SCOPED_TRACE(name + " " + std::to_string(width));
+      expect_readable(plot_svg(curve, options), width);
+    }
+  }
+}
+
+TEST(Plot, WeightsOfNearPointsAreWrittenApart) {
+  CurveSpec spec;
+  spec.name = "near";
+  spec.degree = 3;
+  spec.points = {0, 0.5, 0.5, 0.501, 0.5, 0.499, 0.5, 1};
+  spec.weights = {1, 1.25, 2.5, 3.75, 1.5, 2.25, 1.125, 1};
+  spec.knots = {0, 0, 0, 0, 0.5, 0.505, 0.51, 0.515, 1, 1, 1, 1};
+  expect_readable(plot_svg(*NurbsCurve::create(spec)), 960);
+}
+
+TEST(Plot, TicksAreToldApart) {
+  CurveSpec spec;
+  spec.name = "narrow";
+  spec.degree = 1;
+  spec.points = {1000.001, 1000.002};
+  const std::string svg = plot_svg(*NurbsCurve::create(spec));
+  EXPECT_EQ(count_of(svg, ">1000<"), 0);
+  EXPECT_THAT(svg, HasSubstr(">1000.001<"));
+  EXPECT_THAT(svg, HasSubstr(">1000.0015<"));
+  expect_readable(svg, 960);
+  const std::string text = plot_text(*NurbsCurve::create(spec));
+  EXPECT_THAT(text, HasSubstr(" 1000.002 │"));
+  EXPECT_THAT(text, HasSubstr(" 1000.001 │"));
+  spec.points = {1, 0};
+  spec.knots = {1000.001, 1000.001, 1000.002, 1000.002};
+  expect_readable(plot_svg(*NurbsCurve::create(spec)), 960);
+}
+
+TEST(Plot, AClosedCurveInAPlaneShowsTheKnotAtItsSeam) {
+  const std::string dot = "r=\"3.2\" fill=\"#ffffff\"";
+  CurveSpec spec;
+  spec.name = "square";
+  spec.degree = 1;
+  spec.dim = 2;
+  spec.points = {0, 0, 1, 0, 1, 1, 0, 1};
+  spec.periodic = true;
+  const int legend = 1;
+  EXPECT_EQ(count_of(plot_svg(*NurbsCurve::create(spec)), dot), 4 + legend);
+  spec.periodic = false;
+  EXPECT_EQ(count_of(plot_svg(*NurbsCurve::create(spec)), dot), 2 + legend) << "open: no seam";
+  spec.points.insert(spec.points.end(), {0, 0});
+  EXPECT_EQ(count_of(plot_svg(*NurbsCurve::create(spec)), dot), 4 + legend);
 }
 
 TEST(Plot, SamePictureEveryTime) {

@@ -4,6 +4,7 @@
 
 #include "demo.h"
 #include "event_feed.h"
+#include "patch_warnings.h"
 #include "render_job.h"
 
 namespace knotwave::render {
@@ -61,6 +62,9 @@ Result<std::vector<engine::WaveCycles>> read_waves(const engine::BankSpec& spec,
 Result<void> read_bank(const std::string& path, RenderInput& input) {
   const auto spec = engine::read_bank(path);
   if (!spec) return spec.error();
+  for (const auto& patch : spec->patches) {
+    for (auto& warning : patch_warnings(patch)) input.warnings.push_back(std::move(warning));
+  }
   const auto waves = read_waves(*spec, input.warnings);
   if (!waves) return waves.error();
   for (const auto& file : spec->files) input.files.push_back({"a file the patch names,", file});

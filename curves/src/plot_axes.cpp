@@ -9,6 +9,10 @@ namespace knotwave::curves {
 namespace {
 
 constexpr double kTickSize = 13;
+constexpr double kRightMargin = 24;  // of the page, for half a number
+
+/// How much too far to the right a number of that width would reach under the right edge.
+double overhang(double width) { return std::max(0.0, width / 2 - kRightMargin); }
 
 double widest(const std::vector<std::string>& texts) {
   double width = 0;
@@ -81,8 +85,8 @@ void draw_title(Scene& scene, double left, double right, double y, const std::st
   constexpr double kBoldness = 1.1;  // bold letters are wider by as much, nearly
   const double room = right - left - kGap;
   const double words = text_width(description, kSize);
-  // A long name has what the description leaves, but at least half.
-  const double name_room = std::max(0.5 * room, room - words) / kBoldness;
+  // A long name has what the description leaves, but at least two fifths.
+  const double name_room = std::max(0.4 * room, room - words) / kBoldness;
   const std::string shown = fitted(name, kNameSize, name_room);
   scene.text({left, y}, shown, kInk, kNameSize, Shape::Anchor::start, true);
   const double rest = room - kBoldness * text_width(shown, kNameSize);
@@ -103,7 +107,8 @@ std::vector<double> Frame::ticks_across() const {
     const std::vector<double> ticks = round_ticks(x, count);
     if (ticks.size() < 2) return ticks;
     const double distance = at(ticks[1], y.low).x - at(ticks[0], y.low).x;
-    if (widest(tick_texts(ticks)) + 10 <= distance) return ticks;
+    const double width = widest(tick_texts(ticks));
+    if (width + 10 + overhang(width) <= distance) return ticks;
   }
   return round_ticks(x, 2);
 }
@@ -116,7 +121,9 @@ void Frame::draw(Scene& scene, const std::string& x_name, const std::string& y_n
   for (std::size_t i = 0; i < across.size(); ++i) {
     const Point foot = at(across[i], y.low);
     scene.line({{foot.x, top}, {foot.x, bottom}}, kFaint, 1);
-    scene.text({foot.x, bottom + 30}, across_texts[i], kInk, kTickSize, Shape::Anchor::middle);
+    const double most = right - overhang(text_width(across_texts[i], kTickSize));
+    scene.text({std::min(foot.x, most), bottom + 30}, across_texts[i], kInk, kTickSize,
+               Shape::Anchor::middle);
   }
   const std::vector<double> up = ticks_up();
   const std::vector<std::string> up_texts = tick_texts(up);

@@ -78,6 +78,18 @@ TEST_F(RenderProgram, ADashIsTheScoreOnStandardInput) {
   EXPECT_THAT(over.err, HasSubstr("--json 'small.mid' would overwrite the score '-'"));
 }
 
+TEST_F(RenderProgram, AMapThatMovesACurveNothingPlaysIsTold) {
+  const std::string map =
+      "[curves.idle]\ndegree = 1\npoints = [0, 1]\n[[maps]]\nfrom = \"mod\"\nlow = 0\nhigh = 1\n";
+  write("idle.toml", kSmallPatch + map + "to = \"curve.idle.point.0\"\n");
+  EXPECT_EQ(run({"idle.toml", "small.mid", "--check"}).err,
+            "idle.toml:22:6: warning: this map moves 'idle', which nothing plays\n");
+  write("busy.toml", kSmallPatch + map + "to = \"curve.gate.point.1\"\n");
+  const auto busy = run({"busy.toml", "small.mid", "--check"});
+  EXPECT_EQ(busy.exit_code, 0);
+  EXPECT_THAT(busy.err, IsEmpty());
+}
+
 TEST_F(RenderProgram, AWaveFrameThatNoCycleHasIsToldWithItsPlace) {
   render({"-o", "wave.wav"});
   for (const auto& [frame, is_good] : {std::pair{3, false}, {4, true}, {65537, false}}) {
@@ -91,8 +103,8 @@ TEST_F(RenderProgram, AWaveFrameThatNoCycleHasIsToldWithItsPlace) {
     const auto done = support::run_program({"knotwave-curve", "check", "cut.toml"}, options);
     EXPECT_EQ(done.exit_code, is_good ? 0 : 1) << done.err;
     if (is_good) continue;
-    EXPECT_EQ(done.err, "cut.toml:6:14: error: wave_frame is " + std::to_string(frame) +
-                            "; it must be in 4 to 65536\n");
+    EXPECT_EQ(done.err, "cut.toml:6:14: error: oscillator 'a': wave_frame is " +
+                            std::to_string(frame) + "; it must be in 4 to 65536\n");
   }
 }
 

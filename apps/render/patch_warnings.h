@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// What in a patch is right but can hardly be meant.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "knotwave/engine/patch.h"
+
+namespace knotwave::render {
+
+/// `file.toml:30:1: warning: ...`, one for each map that moves a curve which nothing plays.
+std::vector<std::string> patch_warnings(const engine::PatchSpec& patch);
+
+}  // namespace knotwave::render

@@ -45,15 +45,16 @@ Result<std::unique_ptr<const BankProgram>> BankProgram::create(const BankSpec& s
 BankProgram::Choice BankProgram::choose(int channel, int bank_msb, int bank_lsb, int program,
                                         int key) const KNOTWAVE_RT {
   const bool drum = has_drums_ && channel == drum_channel_;
-  // A bank nobody wrote a patch for plays the programs of whatever bank there is.
-  for (const bool any_bank : {false, true}) {
+  // An entry for this very bank goes before one that names none, which every bank falls back to.
+  for (const bool names_bank : {true, false}) {
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       const BankEntry& entry = entries_[i];
       if (drum ? entry.key != key : entry.key >= 0) continue;
       if (program < entry.program_low || program > entry.program_high) continue;
+      const bool has_bank = entry.bank_msb >= 0 || entry.bank_lsb >= 0;
       const bool same_bank = (entry.bank_msb < 0 || entry.bank_msb == bank_msb) &&
                              (entry.bank_lsb < 0 || entry.bank_lsb == bank_lsb);
-      if (!same_bank && !any_bank) continue;
+      if (has_bank != names_bank || !same_bank) continue;
       Choice choice;
       choice.patch = patches_[static_cast<std::size_t>(entry_patch_[i])].get();
       choice.note = (entry.note >= 0 ? entry.note : key) + entry.transpose_semitones;
@@ -63,7 +64,9 @@ BankProgram::Choice BankProgram::choose(int channel, int bank_msb, int bank_lsb,
       return choice;
     }
   }
-  return {};
+  Choice nothing;
+  nothing.drum = drum;
+  return nothing;
 }
 
 }  // namespace knotwave::engine

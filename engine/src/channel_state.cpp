@@ -26,8 +26,7 @@ void ChannelState::reset() KNOTWAVE_RT {
   coarse_[8] = 64;  // balance
   for (std::size_t sound = 70; sound <= 79; ++sound) coarse_[sound] = 64;
   program_ = bank_msb_ = bank_lsb_ = 0;
-  bend_range_semitones_ = -1;
-  bend_range_cents_ = 0;
+  bend_range_cents_ = -1;
   fine_tuning_ = 8192;
   coarse_tuning_ = 64;
   mpe_members_ = 0;
@@ -60,20 +59,19 @@ void ChannelState::store(int controller, int value) KNOTWAVE_RT {
   if (controller < 32) fine_[static_cast<std::size_t>(controller)] = 0;
 }
 
-ChannelState::Effect ChannelState::control_change(int controller, int value) KNOTWAVE_RT {
+ChannelState::Effect ChannelState::control_change(int controller, int value,
+                                                  double own_bend_range) KNOTWAVE_RT {
   controller &= 127;
   value &= 127;
   switch (controller) {
     case kDataEntryMsb:
-      return data_entry(true, value);
+      return data_entry(true, value, own_bend_range);
     case kDataEntryLsb:
-      return data_entry(false, value);
+      return data_entry(false, value, own_bend_range);
     case kDataIncrement:
-      step_data(1);
-      return Effect::none;
+      return step_data(1, own_bend_range);
     case kDataDecrement:
-      step_data(-1);
-      return Effect::none;
+      return step_data(-1, own_bend_range);
     case kNrpnLsb:
     case kNrpnMsb:
     case kRpnLsb:
@@ -125,15 +123,18 @@ void ChannelState::select_parameter(int controller, int value) KNOTWAVE_RT {
   parameter_ = high ? (value << 7) | (parameter_ & 127) : (parameter_ & ~127) | value;
 }
 
-ChannelState::Effect ChannelState::data_entry(bool coarse, int value) KNOTWAVE_RT {
+int ChannelState::bend_range_cents(double own_bend_range) const KNOTWAVE_RT {
+  return bend_range_cents_ >= 0 ? bend_range_cents_ : static_cast<int>(own_bend_range * 100 + 0.5);
+}
+
+ChannelState::Effect ChannelState::data_entry(bool coarse, int value,
+                                              double own_bend_range) KNOTWAVE_RT {
   if (!registered_) return Effect::none;
   switch (parameter_) {
-    case kRpnBendRange: {
-      const int semitones = coarse ? value : static_cast<int>(bend_range_semitones(2));
-      bend_range_cents_ = coarse ? 0 : std::min(value, 99);
-      bend_range_semitones_ = semitones + bend_range_cents_ / 100.0;
-      break;
-    }
+    case kRpnBendRange:
+      bend_range_cents_ =
+          coarse ? value * 100 : bend_range_cents(own_bend_range) / 100 * 100 + std::min(value, 99);
+      return Effect::bend_range;
     case kRpnFineTuning:
       fine_tuning_ = coarse ? (value << 7) | (fine_tuning_ & 127) : (fine_tuning_ & ~127) | value;
       break;
@@ -150,16 +151,12 @@ ChannelState::Effect ChannelState::data_entry(bool coarse, int value) KNOTWAVE_R
   return Effect::none;
 }
 
-void ChannelState::step_data(int step) KNOTWAVE_RT {
-  if (!registered_) return;
+ChannelState::Effect ChannelState::step_data(int step, double own_bend_range) KNOTWAVE_RT {
+  if (!registered_) return Effect::none;
   switch (parameter_) {
-    case kRpnBendRange: {
-      const int whole = static_cast<int>(bend_range_semitones(2));
-      const int cents = std::clamp(whole * 100 + bend_range_cents_ + step, 0, 12799);
-      bend_range_cents_ = cents % 100;
-      bend_range_semitones_ = cents / 100 + bend_range_cents_ / 100.0;
-      break;
-    }
+    case kRpnBendRange:
+      bend_range_cents_ = std::clamp(bend_range_cents(own_bend_range) + step, 0, 12799);
+      return Effect::bend_range;
     case kRpnFineTuning:
       fine_tuning_ = std::clamp(fine_tuning_ + step, 0, 16383);
       break;
@@ -169,6 +166,7 @@ void ChannelState::step_data(int step) KNOTWAVE_RT {
     default:
       break;
   }
+  return Effect::none;
 }
 
 void ChannelState::program_change(int program) KNOTWAVE_RT {

@@ -6,6 +6,12 @@
 #include <cstring>
 
 namespace knotwave::engine {
+namespace {
+
+constexpr int kMiddleKey = 60;             // stands for all keys of a channel
+constexpr double kUsualBendSemitones = 2;  // where no patch says otherwise
+
+}  // namespace
 
 Performance::Performance(const EngineConfig& config)
     : config_(config),
@@ -92,7 +98,9 @@ void Performance::handle_midi(const base::MidiEvent& midi, base::SampleTime time
 void Performance::handle_control(int channel, int controller, int value,
                                  base::SampleTime time) KNOTWAVE_RT {
   ChannelState& state = channels_[static_cast<std::size_t>(channel)];
-  switch (state.control_change(controller, value)) {
+  const bool is_data =
+      controller == kDataEntryLsb || controller == kDataIncrement || controller == kDataDecrement;
+  switch (state.control_change(controller, value, is_data ? own_bend_range(channel) : 0)) {
     case ChannelState::Effect::none:
       break;
     case ChannelState::Effect::pedals:
@@ -115,6 +123,9 @@ void Performance::handle_control(int channel, int controller, int value,
       break;
     case ChannelState::Effect::mpe_zone:
       configure_mpe(channel, state.mpe_members(), time);
+      break;
+    case ChannelState::Effect::bend_range:
+      share_bend_range(channel);
       break;
   }
 }
@@ -173,9 +184,30 @@ void Performance::configure_mpe(int channel, int members, base::SampleTime time)
       continue;
     ChannelState& state = channels_[static_cast<std::size_t>(other)];
     state.reset_controllers();
-    state.set_bend_range(-1);
+    state.forget_bend_range();
     update_pedals(other, time);
     lift_keys(other, time);
+  }
+}
+
+double Performance::own_bend_range(int channel) const KNOTWAVE_RT {
+  if (zones_.is_member(channel)) return kMpeMemberBendSemitones;
+  if (zones_.is_master(channel)) return kMpeMasterBendSemitones;
+  const ChannelState& state = channels_[static_cast<std::size_t>(channel)];
+  const PatchProgram* patch =
+      bank_->choose(channel, state.bank_msb(), state.bank_lsb(), state.program(), kMiddleKey).patch;
+  return patch == nullptr ? kUsualBendSemitones : patch->spec().bend_semitones;
+}
+
+// What one member of a zone says of the bend range holds for all of them; the master has its own
+// (M1-100-UM, 2.4).
+void Performance::share_bend_range(int channel) KNOTWAVE_RT {
+  if (!zones_.is_member(channel)) return;
+  const int master = zones_.master_of(channel);
+  for (int other = 0; other < kChannels; ++other) {
+    if (other == master || zones_.master_of(other) != master) continue;
+    channels_[static_cast<std::size_t>(other)].take_bend_range(
+        channels_[static_cast<std::size_t>(channel)]);
   }
 }
 

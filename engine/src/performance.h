@@ -60,6 +60,9 @@ class Performance {
   void handle_system(const base::MidiEvent& midi, base::SampleTime time) KNOTWAVE_RT;
   void handle_control(int channel, int controller, int value, base::SampleTime time) KNOTWAVE_RT;
   void set_note_mode(int channel, base::SampleTime time) KNOTWAVE_RT;
+  /// The bend range of a channel that has heard no RPN 0.
+  double own_bend_range(int channel) const KNOTWAVE_RT;
+  void share_bend_range(int channel) KNOTWAVE_RT;
   void configure_mpe(int channel, int members, base::SampleTime time) KNOTWAVE_RT;
   void reset_system(base::SampleTime time) KNOTWAVE_RT;
   void update_pedals(int channel, base::SampleTime time) KNOTWAVE_RT;
@@ -74,6 +77,7 @@ class Performance {
 
   // performance_notes.cpp: notes
   void note_on(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT;
+  void count_missing(const MissingPatch& missing) KNOTWAVE_RT;
   void note_off(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT;
   void play_poly(int channel, int key, int velocity, const BankProgram::Choice& choice, int source,
                  base::SampleTime time) KNOTWAVE_RT;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Notes: which voice plays them, what is stolen, how a monophonic instrument moves between keys.
+#include <algorithm>
+#include <span>
+
 #include "performance.h"
 
 namespace knotwave::engine {
@@ -10,7 +13,11 @@ void Performance::note_on(int channel, int key, int velocity, base::SampleTime t
   const ChannelState& programs = channels_[static_cast<std::size_t>(master)];
   const BankProgram::Choice choice =
       bank_->choose(master, programs.bank_msb(), programs.bank_lsb(), programs.program(), key);
-  if (choice.patch == nullptr) return;
+  if (choice.patch == nullptr) {
+    count_missing({master, programs.bank_msb(), programs.bank_lsb(), programs.program(),
+                   choice.drum ? key : -1});
+    return;
+  }
   channels_[static_cast<std::size_t>(channel)].forget_poly_pressure(key);
   ++counters_.notes;
   Mono& mono = monos_[static_cast<std::size_t>(channel)];
@@ -26,6 +33,16 @@ void Performance::note_on(int channel, int key, int velocity, base::SampleTime t
   } else {
     play_poly(channel, key, velocity, choice, source, time);
   }
+}
+
+void Performance::count_missing(const MissingPatch& missing) KNOTWAVE_RT {
+  ++counters_.notes_without_patch;
+  const auto named =
+      std::span(counters_.missing).first(static_cast<std::size_t>(counters_.missing_count));
+  if (named.size() == counters_.missing.size()) return;
+  if (std::find(named.begin(), named.end(), missing) != named.end()) return;
+  counters_.missing[named.size()] = missing;
+  ++counters_.missing_count;
 }
 
 void Performance::note_off(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT {

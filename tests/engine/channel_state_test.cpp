@@ -89,6 +89,19 @@ TEST(ChannelState, BendRangeIsSetBySemitonesAndCents) {
   EXPECT_EQ(channel.bend_range_semitones(2), 12.5);
 }
 
+TEST(ChannelState, CentsAndStepsStartFromTheRangeInForce) {
+  ChannelState cents, up, down;
+  for (ChannelState* channel : {&cents, &up, &down}) select_rpn(*channel, 0);
+  EXPECT_EQ(cents.control_change(kDataEntryLsb, 50, 12), Effect::bend_range);
+  EXPECT_EQ(cents.bend_range_semitones(12), 12.5);
+  EXPECT_EQ(up.control_change(kDataIncrement, 0, 48), Effect::bend_range);
+  EXPECT_EQ(up.bend_range_semitones(48), 48.01);
+  EXPECT_EQ(down.control_change(kDataDecrement, 0, 12.25), Effect::bend_range);
+  EXPECT_EQ(down.bend_range_semitones(12.25), 12.24);
+  for (int i = 0; i < 1300; ++i) down.control_change(kDataDecrement, 0);
+  EXPECT_EQ(down.bend_range_semitones(12.25), 0.0);
+}
+
 TEST(ChannelState, DataIncrementStepsBendRangeByCentsAndCoarseTuningBySemitones) {
   ChannelState channel;
   select_rpn(channel, 0);

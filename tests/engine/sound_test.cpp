@@ -212,6 +212,42 @@ TEST(Sound, MpeBendsOneNoteOfAChord) {
               220 * std::exp2(48 * (80 * 128 - 8192) / 8191.0 / 12), 0.01);
 }
 
+TEST(Sound, AStepOfTheBendRangeStartsFromThePatchesOwn) {
+  const auto bank = bank_from(with(kPlain, "bend_semitones = 12"));
+  const auto engine = engine_for(*bank);
+  std::vector<Event> events = {control(0, 0, kRpnMsb, 0), control(0, 0, kRpnLsb, 0)};
+  for (int i = 0; i < 10; ++i) events.push_back(control(0, 0, kDataIncrement, 0));
+  events.push_back(midi(1, 0xE0, 127, 127));
+  events.push_back(on(2, 0, 57));
+  const Sound sound = play(*engine, events, 24000);
+  EXPECT_NEAR(frequency_hz(sound.left, 2000, 24000), 220 * std::exp2(12.1 / 12), 0.01);
+}
+
+TEST(Sound, TheBendRangeOfOneMpeMemberIsThatOfItsZoneAndTheMasterHasItsOwn) {
+  const auto bank = bank_from(kPlain);
+  const auto pitch_of = [&](int told, int bent) {
+    const auto engine = engine_for(*bank);
+    std::vector<Event> events;
+    for (const int master : {0, 15}) {
+      events.push_back(control(0, master, kRpnMsb, 0));
+      events.push_back(control(0, master, kRpnLsb, 6));
+      events.push_back(control(0, master, kDataEntryMsb, 3));
+    }
+    events.push_back(control(0, told, kRpnMsb, 0));
+    events.push_back(control(0, told, kRpnLsb, 0));
+    events.push_back(control(0, told, kDataEntryMsb, 24));
+    events.push_back(midi(1, 0xE0 | bent, 127, 127));
+    events.push_back(on(2, bent == 0 ? 1 : bent, 57));
+    const Sound sound = play(*engine, events, 24000);
+    return 12 * std::log2(frequency_hz(sound.left, 2000, 24000) / 220);
+  };
+  EXPECT_NEAR(pitch_of(2, 1), 24, 1e-3);
+  EXPECT_NEAR(pitch_of(2, 3), 24, 1e-3);
+  EXPECT_NEAR(pitch_of(2, 0), 2, 1e-3);    // the master keeps its range
+  EXPECT_NEAR(pitch_of(0, 1), 48, 1e-3);   // and speaks of its own alone
+  EXPECT_NEAR(pitch_of(2, 13), 48, 1e-3);  // the other zone
+}
+
 TEST(Sound, AReleasedMpeNoteDoesNotFollowTheNextOneOnItsChannel) {
   const auto bank = bank_from(kPlain);
   constexpr std::size_t kFrames = 20000;
@@ -261,6 +297,12 @@ high = 4
   // The middle of a rational parabola of heights 0, 1, 0 is w / (1 + w).
   EXPECT_NEAR(middle(127) / middle(0), (4 / 5.0) / (1 / 2.0), 1e-3);
   EXPECT_NEAR(middle(64) / middle(0), (1 + 3 * 64 / 127.0) / (2 + 3 * 64 / 127.0) / 0.5, 1e-3);
+  // The wheel at rest is `low`, and the weight in the file is not heard.
+  std::string written(kWeighted);
+  written.replace(written.find("[1, 1, 1]"), 9, "[1, 3, 1]");
+  const auto other = bank_from(written);
+  const auto engine = engine_for(*other);
+  EXPECT_EQ(peak(play(*engine, {on(0, 0, 69, 127)}, 48000).left, 23900, 24100), middle(0));
 }
 
 TEST(Sound, TempoSetsAnLfoInBeats) {

@@ -39,8 +39,8 @@ class BankProgram {
     int choke_group = 0;
     bool drum = false;
   };
-  /// [audio] channel 0..15. The first entry that fits; a bank number without one plays the program
-  /// of any bank; a drum key without one plays nothing.
+  /// [audio] channel 0..15. The entry for this very bank, else the one that names no bank; a
+  /// program or drum key without either plays nothing.
   Choice choose(int channel, int bank_msb, int bank_lsb, int program, int key) const KNOTWAVE_RT;
 
   double gain_lin() const KNOTWAVE_RT { return gain_lin_; }

@@ -50,6 +50,7 @@ class ChannelState {
     all_notes_off,  ///< keys up; pedals still hold
     note_mode,      ///< CC 126 or 127: keys up, then note_mode() for mono_channels()
     mpe_zone,       ///< RPN 6: members() channels
+    bend_range,     ///< RPN 0 moved
   };
 
   /// What a message said in place of the patch.
@@ -65,15 +66,21 @@ class ChannelState {
   /// tuning and note mode stay.
   void reset_controllers() KNOTWAVE_RT;
 
-  Effect control_change(int controller, int value) KNOTWAVE_RT;
+  /// `own_bend_range` is what bend_range_semitones() falls back to: the cents and steps of RPN 0
+  /// start from the range in force.
+  Effect control_change(int controller, int value, double own_bend_range = 2) KNOTWAVE_RT;
   void program_change(int program) KNOTWAVE_RT;
   void pitch_bend(int lsb, int msb) KNOTWAVE_RT { bend_ = ((msb & 127) << 7) | (lsb & 127); }
   void channel_pressure(int value) KNOTWAVE_RT { channel_pressure_ = value & 127; }
   void poly_pressure(int key, int value) KNOTWAVE_RT;
   /// A new note starts without the pressure its key had before.
   void forget_poly_pressure(int key) KNOTWAVE_RT { poly_pressure(key, 0); }
-  /// Used when a zone is set up. [audio]
-  void set_bend_range(double semitones) KNOTWAVE_RT { bend_range_semitones_ = semitones; }
+  /// Used when a zone is set up: as if RPN 0 had never been heard. [audio]
+  void forget_bend_range() KNOTWAVE_RT { bend_range_cents_ = -1; }
+  /// Used where one member of a zone speaks for the others. [audio]
+  void take_bend_range(const ChannelState& other) KNOTWAVE_RT {
+    bend_range_cents_ = other.bend_range_cents_;
+  }
 
   /// 0..1. Controllers 0..31 have 14 bits once their fine half (32..63) was heard, else 7.
   double control(int controller) const KNOTWAVE_RT;
@@ -81,7 +88,7 @@ class ChannelState {
   double bend() const KNOTWAVE_RT;
   /// RPN 0 in semitones, or `fallback` while none was heard.
   double bend_range_semitones(double fallback) const KNOTWAVE_RT {
-    return bend_range_semitones_ < 0 ? fallback : bend_range_semitones_;
+    return bend_range_cents_ < 0 ? fallback : bend_range_cents_ / 100.0;
   }
   /// RPN 1 and 2 together.
   double tuning_semitones() const KNOTWAVE_RT;
@@ -117,9 +124,11 @@ class ChannelState {
   void release_pedals() KNOTWAVE_RT { coarse_[kSustain] = coarse_[kSostenuto] = 0; }
 
  private:
-  Effect data_entry(bool coarse, int value) KNOTWAVE_RT;
+  Effect data_entry(bool coarse, int value, double own_bend_range) KNOTWAVE_RT;
   void select_parameter(int controller, int value) KNOTWAVE_RT;
-  void step_data(int step) KNOTWAVE_RT;
+  Effect step_data(int step, double own_bend_range) KNOTWAVE_RT;
+  /// The range in force.
+  int bend_range_cents(double own_bend_range) const KNOTWAVE_RT;
   void store(int controller, int value) KNOTWAVE_RT;
 
   static constexpr int kNoParameter = 0x3FFF;  ///< RPN 127/127, the null parameter
@@ -131,12 +140,11 @@ class ChannelState {
   int bend_;
   int channel_pressure_;
   int program_, bank_msb_, bank_lsb_;
-  int parameter_;                ///< the selected RPN
-  bool registered_;              ///< the last selection was an RPN, not an NRPN
-  double bend_range_semitones_;  ///< < 0: never set
-  int bend_range_cents_;
-  int fine_tuning_;    ///< 14 bits, 8192 = 0
-  int coarse_tuning_;  ///< 7 bits, 64 = 0
+  int parameter_;         ///< the selected RPN
+  bool registered_;       ///< the last selection was an RPN, not an NRPN
+  int bend_range_cents_;  ///< < 0: never set
+  int fine_tuning_;       ///< 14 bits, 8192 = 0
+  int coarse_tuning_;     ///< 7 bits, 64 = 0
   int mpe_members_;
   bool timbre_sent_;
   Portamento portamento_;

@@ -2,6 +2,7 @@
 // The engine: events in, samples out, the same bits for any block size and number of threads. It
 // knows no device and no file.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -20,12 +21,26 @@ struct EngineConfig {
   double volume_db = 0;    ///< master
 };
 
+/// A note nobody played: the bank has no patch for its program, or for its drum key.
+struct MissingPatch {
+  int channel = 0;  ///< from 0; under MPE the master
+  int bank_msb = 0, bank_lsb = 0, program = 0;
+  int key = -1;  ///< drums: the key; -1 = melodic
+
+  bool operator==(const MissingPatch&) const = default;
+};
+
 /// Counters the audio thread keeps; read them between process() calls.
 struct EngineCounters {
+  static constexpr int kMissingNamed = 4;
+
   std::int64_t notes = 0;
   std::int64_t voices_stolen = 0;
-  std::int64_t notes_dropped = 0;  ///< no voice and no fading place
-  std::int64_t events_late = 0;    ///< before the block; played at its first sample
+  std::int64_t notes_dropped = 0;                   ///< no voice and no fading place
+  std::int64_t notes_without_patch = 0;             ///< the bank has no such program or drum key
+  std::array<MissingPatch, kMissingNamed> missing;  ///< the first of them that differ
+  int missing_count = 0;
+  std::int64_t events_late = 0;  ///< before the block; played at its first sample
   std::int64_t events_unknown = 0;
   std::int64_t joins_limited = 0;  ///< C1 was not possible within the hull
   int voices_now = 0;

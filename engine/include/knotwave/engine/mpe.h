@@ -23,6 +23,10 @@ class MpeZones {
   int lower_members() const KNOTWAVE_RT { return lower_; }
   int upper_members() const KNOTWAVE_RT { return upper_; }
   bool is_member(int channel) const KNOTWAVE_RT { return master_of(channel) != channel; }
+  /// `channel` speaks for a zone.
+  bool is_master(int channel) const KNOTWAVE_RT {
+    return (channel == kLowerMaster && lower_ > 0) || (channel == kUpperMaster && upper_ > 0);
+  }
   /// The channel that speaks for `channel`: the zone's master, or itself outside zones.
   int master_of(int channel) const KNOTWAVE_RT;
 

@@ -5,6 +5,8 @@
 
 #include "knotwave/base/elementary.h"
 
+#include "map_limits.h"
+
 namespace knotwave::engine {
 namespace {
 
@@ -220,7 +222,8 @@ void Modulation::render_lfo(const PatchProgram& patch, std::size_t index, const 
   const PatchProgram::LfoPart& part = patch.lfos()[index];
   std::span<const double> rate_factor, beats;
   if (part.rate_moves) {
-    const Signal factor = power_of_2(scratch.slots[kSlotLfoRate + index], n, scratch.source);
+    const Signal factor =
+        limited_power_of_2(scratch.slots[kSlotLfoRate + index], n, scratch.source);
     if (factor.is_constant()) std::fill_n(scratch.source.begin(), n, factor.constant);
     rate_factor = std::span(scratch.source).first(n);
   }

@@ -12,7 +12,23 @@
 namespace knotwave::engine {
 namespace {
 
-constexpr double kMostDepth = 1000;
+// How far one map may move its target, in the target's unit.
+double most_depth(MapTarget target) {
+  switch (target) {
+    case MapTarget::amp:
+    case MapTarget::level:
+    case MapTarget::drive:
+      return 240;  // dB
+    case MapTarget::pitch:
+    case MapTarget::cutoff:
+      return 240;  // semitones
+    case MapTarget::lfo_rate:
+    case MapTarget::envelope_time:
+      return 20;  // octaves
+    default:
+      return 1000;
+  }
+}
 
 std::string nearest(std::string_view word, const std::vector<std::string>& words) {
   return base::suggestion(word, std::vector<std::string_view>(words.begin(), words.end()));
@@ -92,7 +108,8 @@ void PatchReader::read_map(const Node& table, int number) {
                          base::number_text(map.high) + "); a falling curve turns a map round");
     }
   } else {
-    map.depth = reader.number("depth", 1, -kMostDepth, kMostDepth);
+    const double most = most_depth(map.target);
+    map.depth = reader.number("depth", 1, -most, most);
   }
   keep(reader.finish());
   patch_.maps.push_back(std::move(map));

@@ -6,6 +6,8 @@
 
 #include "knotwave/base/elementary.h"
 
+#include "map_limits.h"
+
 namespace knotwave::engine {
 namespace {
 
@@ -166,12 +168,12 @@ void Voice::render_amp(std::int64_t first, std::size_t n, VoiceScratch& scratch)
     velocity.values = scratch.work.data();
   }
   gain = product(gain, velocity, n, scratch.amp);
-  const Signal level = gain_of_db(modulation.slots[kSlotAmp], n, scratch.work);
+  const Signal level = limited_gain_of_db(modulation.slots[kSlotAmp], n, scratch.work);
   gain = product(gain, level, n, scratch.amp);
-  const Signal factor = mapped(modulation.slots[kSlotGain], n, scratch.work,
-                               [](double x) { return std::max(0.0, 1 + x); });
+  const Signal factor = limited_factor(modulation.slots[kSlotGain], n, scratch.work);
   gain = product(gain, factor, n, scratch.amp);
   gain = product(gain, {0, modulation.envelopes[amp_index].data()}, n, scratch.amp);
+  gain = limited_gain(gain, n, scratch.amp);
   if (fade_.is_moving(first)) {
     for (std::size_t i = 0; i < n; ++i) {
       scratch.amp[i] *= fade_.at(first + static_cast<std::int64_t>(i));

@@ -6,6 +6,7 @@
 #include "knotwave/dsp/crossfade.h"
 #include "knotwave/dsp/noise.h"
 
+#include "map_limits.h"
 #include "voice.h"
 
 namespace knotwave::engine {
@@ -111,10 +112,10 @@ void Voice::mix_source(int source, const PatchProgram::Source& part, std::size_t
                        VoiceScratch& scratch) KNOTWAVE_RT {
   const ModulationScratch& modulation = scratch.modulation;
   const auto index = static_cast<std::size_t>(source);
-  const Signal level = gain_of_db(modulation.slots[kSlotSourceLevel + index], n, scratch.work);
+  const Signal level =
+      limited_gain_of_db(modulation.slots[kSlotSourceLevel + index], n, scratch.work);
   Signal gain = product({part.gain_lin, nullptr}, level, n, scratch.gain);
-  const Signal factor = mapped(modulation.slots[kSlotSourceGain + index], n, scratch.work,
-                               [](double x) { return std::max(0.0, 1 + x); });
+  const Signal factor = limited_factor(modulation.slots[kSlotSourceGain + index], n, scratch.work);
   gain = product(gain, factor, n, scratch.gain);
   if (part.envelope >= 0) {
     const ChunkBuffer& envelope = modulation.envelopes[static_cast<std::size_t>(part.envelope)];
@@ -125,6 +126,7 @@ void Voice::mix_source(int source, const PatchProgram::Source& part, std::size_t
   } else if (patch_->spec().crossfade_on && source == patch_->spec().crossfade_b) {
     gain = product(gain, scratch.fade_gain_b, n, scratch.gain);
   }
+  gain = limited_gain(gain, n, scratch.gain);
   if (patch_->is_mono()) {
     to_floats(gain, n, scratch.gain_left);
     for (std::size_t i = 0; i < n; ++i) {
@@ -175,7 +177,7 @@ void Voice::filter(std::size_t n, const Signal& key_pitch, VoiceScratch& scratch
   });
   semitones = sum(semitones, scratch.modulation.slots[kSlotCutoff], n, scratch.work);
   const Signal octaves = mapped(semitones, n, scratch.work, [](double x) { return x / 12; });
-  const Signal factor = power_of_2(octaves, n, scratch.work);
+  const Signal factor = limited_power_of_2(octaves, n, scratch.work);
   const Signal cutoff =
       mapped(factor, n, scratch.work, [&](double x) { return spec.filter_cutoff_hz * x; });
   to_floats(cutoff, n, scratch.control_a);

@@ -155,10 +155,11 @@ void Voice::mix_source(int source, const PatchProgram::Source& part, std::size_t
 
 void Voice::shape(std::size_t n, VoiceScratch& scratch) KNOTWAVE_RT {
   const dsp::ShaperProgram* shaper = patch_->shaper();
-  if (shaper == nullptr) return;
+  // Without any of the shaped sound, its half sample of delay and loss of treble are not heard.
+  if (shaper == nullptr || patch_->spec().shaper_mix == 0) return;
   const Signal drive_db = mapped(scratch.modulation.slots[kSlotDrive], n, scratch.work,
                                  [&](double db) { return patch_->spec().shaper_drive_db + db; });
-  to_floats(gain_of_db(drive_db, n, scratch.work), n, scratch.control_a);
+  to_floats(limited_gain_of_db(drive_db, n, scratch.work), n, scratch.control_a);
   const auto mix = static_cast<float>(patch_->spec().shaper_mix);
   const std::span<const float> drives = std::span(scratch.control_a).first(n);
   const std::span<float> left = std::span(scratch.mix_left).first(n);

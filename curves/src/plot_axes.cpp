@@ -104,7 +104,7 @@ std::vector<double> Frame::ticks_up() const {
 
 std::vector<double> Frame::ticks_across() const {
   for (int count = 10; count > 2; --count) {
-    const std::vector<double> ticks = round_ticks(x, count);
+    std::vector<double> ticks = round_ticks(x, count);
     if (ticks.size() < 2) return ticks;
     const double distance = at(ticks[1], y.low).x - at(ticks[0], y.low).x;
     const double width = widest(tick_texts(ticks));

@@ -67,7 +67,7 @@ struct Error {
   long long offset = -1;  ///< byte offset in a binary file; -1 = unknown
 
   /// `file.toml:12:8: error: message`, leaving out what is unknown; a byte offset reads
-  /// `file.mid: byte 12: error: message`. Control characters read \x1b, long words are cut. [control]
+  /// `file.mid: byte 12: error: message`. Control bytes read \x1b, long words are cut. [control]
   std::string to_string() const;
 };
 

@@ -149,11 +149,61 @@ def finer(rng):
             yield "elevate_degree", [1 + rng.randrange(5)], [curve], looks
 
 
+def combinations(rng):
+    """sum, product, join, morph, compose: values from those of the two curves."""
+    for turn in range(24):
+        p, q = 1 + turn % 5, 1 + turn % 4
+        kind, other_kind = KINDS[turn % 5], KINDS[turn % 3]
+        dim = 1 + turn % 2
+        a = random_curve(rng, p, dim, kind, rational=turn % 4 == 1)
+        b = random_curve(rng, q, dim, other_kind, rational=turn % 4 in (1, 2))
+        looks = [(u, side) for u, side in places(rng, inside(a), inside(b))]
+        both = [(u, side, value(a, u, side), value(b, u, side)) for u, side in looks]
+        yield "sum", [], [a, b], [(u, s, [x + y for x, y in zip(v, w)]) for u, s, v, w in both]
+        yield "product", [], [a, b], [(u, s, [x * y for x, y in zip(v, w)])
+                                      for u, s, v, w in both]
+        gain = random_curve(rng, q, 1, other_kind, rational=turn % 3 == 0)
+        yield "product", [], [a, gain], [
+            (u, side, [x * value(gain, u, side)[0] for x in value(a, u, side)])
+            for u, side in places(rng, inside(a), inside(gain))]
+        yield "join", [], [a, b], [(u, s, v) for u, s, v, _ in both if u < 1] + [
+            (Fraction(u) + 1, s, w) for u, s, _, w in both if u > 0 and u * 2.0 ** 40 % 1 == 0]
+        if not (a["weights"] or b["weights"]):
+            yield "morph", [0.375], [a, b], [
+                (u, s, [x * Fraction(5, 8) + y * Fraction(3, 8) for x, y in zip(v, w)])
+                for u, s, v, w in both]
+
+
+def compositions(rng):
+    """Inner curves that cross the outer one's knots at doubles, or nowhere."""
+    for turn in range(30):
+        p, q = 1 + turn % 4, 1 + turn % 3
+        kind = ["segment", "random", "multiple"][turn % 3]
+        outer = random_curve(rng, p, 1 + turn % 2, kind, rational=turn % 4 == 1)
+        inner = random_curve(rng, q, 1, "segment", rational=turn % 5 == 2)
+        if kind == "segment":
+            inner = random_curve(rng, q, 1, "multiple" if q > 1 else "random", turn % 5 == 2)
+            inner["points"] = [abs(x) for x in inner["points"]]
+        else:  # u itself, or 1 - u, or u^2 over dyadic knots
+            outer["knots"] = [0.0] * (p + 1) + [0.25] * (len(outer["knots"]) - 2 * p - 2) + (
+                [1.0] * (p + 1))
+            if len(outer["knots"]) - 2 * p - 2 > p:
+                continue
+            inner["weights"] = []
+            inner["points"] = [[0.0, 1.0], [1.0, 0.0]][turn % 2] if q == 1 else (
+                [0.0] * q + [1.0] if q == 2 else [0.0, 0.0, 0.0, 0.125])
+        yield "compose", [], [outer, inner], [
+            (u, side, value(outer, value(inner, u, side)[0]))
+            for u, side in places(rng, inside(inner))]
+
+
 def cases():
     yield from paces(random.Random(3))
     yield from segments(random.Random(4))
     yield from removals(random.Random(5))
     yield from finer(random.Random(6))
+    yield from combinations(random.Random(7))
+    yield from compositions(random.Random(8))
 
 
 def text():

@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: MIT
+// Values of sums, products and compositions against exact rationals: edit_references_test.cpp.
+#include "knotwave/curves/combine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "knotwave/curves/algorithms.h"
+#include "knotwave/curves/reparametrize.h"
+
+#include "random_curve.h"
+#include "support/seed.h"
+#include "wide_value.h"
+
+namespace knotwave::test {
+namespace {
+
+using curves::CurveSpec;
+using curves::NurbsCurve;
+using curves::Side;
+using testing::ElementsAre;
+using testing::ElementsAreArray;
+using testing::IsEmpty;
+
+NurbsCurve made(CurveSpec spec) {
+  if (spec.name.empty()) spec.name = "example";
+  auto curve = NurbsCurve::create(std::move(spec));
+  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
+  return std::move(*curve);
+}
+
+CurveSpec spec_of(int degree, std::vector<double> points, std::vector<double> knots = {},
+                  std::vector<double> weights = {}) {
+  CurveSpec spec;
+  spec.degree = degree;
+  spec.points = std::move(points);
+  spec.knots = std::move(knots);
+  spec.weights = std::move(weights);
+  return spec;
+}
+
+CurveSpec saw() {
+  CurveSpec spec = spec_of(1, {0, 1, -1, 0.5}, {0, 0, 0.25, 0.25, 1, 1});
+  spec.jumps = {0.25};
+  return spec;
+}
+
+double at(const NurbsCurve& curve, double u, Side side = Side::right) {
+  double out[curves::kMaxDim];
+  curve.evaluate(u, side, out);
+  return out[0];
+}
+
+// Two random curves over one domain, with knots of their own.
+std::pair<NurbsCurve, NurbsCurve> two_curves(Dice& dice, int most_degree, bool rational) {
+  const auto one = [&](bool periodic) {
+    CurveSpec spec = spec_of(1 + dice.below(most_degree), {});
+    spec.periodic = periodic;
+    const int inner = dice.below(5), p = spec.degree, n = p + 1 + inner;
+    for (int i = 0; i < n; ++i) spec.points.push_back(dice.between(-1, 1));
+    if (rational) {
+      for (int i = 0; i < n; ++i) spec.weights.push_back(dice.between(0.25, 4));
+    }
+    std::vector<double> knots;
+    for (int i = 0; i < (periodic ? n - 1 : inner); ++i) knots.push_back(dice.unit());
+    if (inner > 1 && p > 1 && dice.one_in(3)) knots[1] = knots[0];
+    if (dice.one_in(2)) {
+      for (double& knot : knots) knot = std::floor(knot * 8) / 8;  // often in both curves
+    }
+    std::sort(knots.begin(), knots.end());
+    const bool unclamped = !periodic && dice.one_in(4);
+    for (int i = 0; i <= (periodic ? 0 : p); ++i) {
+      knots.insert(knots.begin(), unclamped ? -0.1 * i : 0);
+      knots.push_back(unclamped ? 1 + 0.1 * i : 1);
+    }
+    spec.knots = knots;
+    return NurbsCurve::create(spec);
+  };
+  while (true) {  // floors can make a knot too frequent
+    const bool periodic = dice.one_in(3);
+    auto first = one(periodic), second = one(periodic && !dice.one_in(3));
+    if (first && second) return {std::move(*first), std::move(*second)};
+  }
+}
+
+TEST(Join, OfSplitIsTheCurveWithAKnotOfTheDegree) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  for (int round = 0; round < support::test_count(2000); ++round) {
+    const NurbsCurve curve = random_curve(dice);
+    const double u = dice.between(curve.u_min(), curve.u_max());
+    if (!(u > curve.u_min())) continue;
+    const auto parts = split(curve, u);
+    ASSERT_TRUE(parts) << parts.error().message;
+    const auto whole = join(parts->left, parts->right);
+    ASSERT_TRUE(whole) << whole.error().message;
+    EXPECT_THAT(whole->jumps(), IsEmpty());
+    EXPECT_EQ(std::ranges::count(whole->knots(), u), curve.degree());
+    EXPECT_EQ(whole->u_max(), curve.u_max());
+    worst = std::max(worst, distance_ulp(dice, curve, *whole, curve.u_min(), curve.u_max()));
+  }
+  std::printf("worst %.2f ulp of max|P|\n", worst);
+  EXPECT_LE(worst, 4);
+}
+
+TEST(Join, ShiftsTheSecondAndRaisesTheLowerDegree) {
+  const auto both = join(made(spec_of(1, {0, 2})), made(spec_of(2, {2, 5, 4}, {3, 3, 3, 5, 5, 5})));
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_THAT(both->knots(), ElementsAre(0, 0, 0, 1, 1, 3, 3, 3));
+  EXPECT_THAT(both->points(), ElementsAre(0, 1, 2, 5, 4));
+}
+
+TEST(Join, EndsApartMakeADeclaredJumpUnlessTheToleranceJoinsThem) {
+  const NurbsCurve up = made(spec_of(1, {0, 1})), next = made(spec_of(1, {1.125, 0}));
+  const auto jump = join(up, next);
+  EXPECT_THAT(jump->jumps(), ElementsAre(1));
+  EXPECT_EQ(at(*jump, 1, Side::left), 1);
+  EXPECT_EQ(at(*jump, 1, Side::right), 1.125);
+  const auto joined = join(up, next, 0.125);
+  EXPECT_THAT(joined->jumps(), IsEmpty());
+  EXPECT_THAT(joined->points(), ElementsAre(0, 1, 0));
+}
+
+TEST(Join, KeepsJumpsOfBothParts) {
+  const auto twice = join(made(saw()), made(saw()));
+  ASSERT_TRUE(twice) << twice.error().message;
+  EXPECT_THAT(twice->jumps(), ElementsAre(0.25, 1, 1.25));
+  EXPECT_EQ(at(*twice, 1.25, Side::left), 1);
+  EXPECT_EQ(at(*twice, 1.25, Side::right), -1);
+}
+
+TEST(Join, ReportsWhatHasNoEnds) {
+  CurveSpec wave = spec_of(2, {0, 1, 0, -1});
+  wave.periodic = true;
+  CurveSpec plane = spec_of(1, {0, 0, 1, 1});
+  plane.dim = 2;
+  const NurbsCurve line = made(spec_of(1, {0, 1}));
+  EXPECT_EQ(join(line, made(wave)).error().code, ErrorCode::unsupported);
+  EXPECT_EQ(join(line, made(plane)).error().message,
+            "curves 'example' and 'example': 1 and 2 coordinates");
+  EXPECT_EQ(join(line, line, -1).error().code, ErrorCode::value_out_of_range);
+  const NurbsCurve late = made(spec_of(1, {0, 1}, {999999999, 999999999, 1e9, 1e9}));
+  EXPECT_EQ(join(late, line).error().code, ErrorCode::value_out_of_range);
+}
+
+TEST(MakeCompatible, GivesBothTheSameKnotsAndKeepsBothWithin4Ulp) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  for (int round = 0; round < support::test_count(2000); ++round) {
+    const auto [first, second] = two_curves(dice, 6, round % 2 == 0);
+    const auto both = make_compatible(first, second);
+    ASSERT_TRUE(both) << both.error().message;
+    EXPECT_THAT(both->second.knots(), ElementsAreArray(both->first.knots()));
+    EXPECT_EQ(both->first.degree(), both->second.degree());
+    EXPECT_EQ(both->first.degree(), std::max(first.degree(), second.degree()));
+    EXPECT_EQ(both->first.is_periodic(), first.is_periodic() && second.is_periodic());
+    EXPECT_EQ(both->second.is_periodic(), both->first.is_periodic());
+    worst = std::max({worst, distance_ulp(dice, first, both->first, 0, 1),
+                      distance_ulp(dice, second, both->second, 0, 1)});
+  }
+  std::printf("worst %.2f ulp of max|P|\n", worst);
+  EXPECT_LE(worst, 4);
+}
+
+// A third is another double over 0..3: within rounding, so it stays one knot.
+TEST(MakeCompatible, KnotsThatRoundingMovedBecomeOne) {
+  const NurbsCurve first = made(spec_of(1, {0, 1, 0, 2}));
+  const auto second = reparametrize(first, 0.1, 0.7);
+  ASSERT_TRUE(second);
+  const auto both = make_compatible(first, *second);
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_EQ(both->first.point_count(), 4);
+  EXPECT_THAT(both->second.knots(), ElementsAreArray(first.knots()));
+}
+
+TEST(MakeCompatible, AJumpOfOneIsAJumpOfBoth) {
+  const auto both = make_compatible(made(spec_of(2, {0, 1, 3})), made(saw()));
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_THAT(both->first.jumps(), ElementsAre(0.25));
+  EXPECT_EQ(at(both->first, 0.25, Side::left), at(both->first, 0.25, Side::right));
+  EXPECT_EQ(at(both->second, 0.25, Side::left), 1);
+  EXPECT_EQ(at(both->second, 0.25, Side::right), -1);
+}
+
+TEST(MakeCompatible, SeamsOfPeriodicCurvesAreCountedFromOneEnd) {
+  CurveSpec at_start = spec_of(2, {0, 1, 2, 3}, {0, 0, 1, 2, 4});
+  CurveSpec at_end = spec_of(2, {0, 1, 2, 3}, {0, 1, 2, 4, 4});
+  at_start.periodic = at_end.periodic = true;
+  Dice dice(1);
+  const NurbsCurve first = made(at_start), second = made(at_end);
+  const auto both = make_compatible(first, second);
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_THAT(both->second.knots(), ElementsAreArray(both->first.knots()));
+  EXPECT_LE(distance_ulp(dice, second, both->second, 0, 4), 1);
+}
+
+TEST(Morph, EndsAreTheCompatibleCurvesToTheBit) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < support::test_count(500); ++round) {
+    const auto [first, second] = two_curves(dice, 5, round % 2 == 0);
+    const auto both = make_compatible(first, second);
+    ASSERT_TRUE(both) << both.error().message;
+    EXPECT_EQ(*morph(first, second, 0), both->first);
+    const auto end = morph(first, second, 1);
+    EXPECT_THAT(end->points(), ElementsAreArray(both->second.points()));
+    EXPECT_THAT(end->weights(), ElementsAreArray(both->second.weights()));
+    EXPECT_THAT(end->knots(), ElementsAreArray(both->second.knots()));
+  }
+}
+
+TEST(Morph, OfPolynomialCurvesIsThePointwiseMix) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  for (int round = 0; round < support::test_count(1000); ++round) {
+    const auto [first, second] = two_curves(dice, 6, false);
+    const double amount = dice.unit(), u = dice.unit();
+    const auto mix = morph(first, second, amount);
+    ASSERT_TRUE(mix) << mix.error().message;
+    const double want = (1 - amount) * at(first, u) + amount * at(second, u);
+    const double size = std::max(largest_coordinate(first), largest_coordinate(second));
+    worst = std::max(worst, std::abs(at(*mix, u) - want) / ulp_of(size));
+  }
+  std::printf("worst %.2f ulp of max|P|\n", worst);
+  EXPECT_LE(worst, 4);
+  EXPECT_EQ(morph(made(spec_of(1, {0, 1})), made(spec_of(1, {0, 1})), 1.5).error().code,
+            ErrorCode::value_out_of_range);
+}
+
+TEST(SumAndProduct, ArePointwiseForAnyKnotsWeightsAndPeriods) {
+  Dice dice(support::test_seed());
+  double worst_sum = 0, worst_product = 0;
+  for (int round = 0; round < support::test_count(2000); ++round) {
+    const auto [first, second] = two_curves(dice, 7, round % 2 == 0);
+    const auto total = sum(first, second), scaled = product(first, second);
+    ASSERT_TRUE(total) << total.error().message;
+    ASSERT_TRUE(scaled) << scaled.error().message;
+    EXPECT_EQ(scaled->degree(), first.degree() + second.degree());
+    EXPECT_EQ(scaled->is_periodic(), first.is_periodic() && second.is_periodic());
+    const double size = std::max(largest_coordinate(first), largest_coordinate(second));
+    for (int i = 0; i < 10; ++i) {
+      const double u = std::clamp(random_parameter(dice, i < 5 ? first : second), 0.0, 1.0);
+      for (const Side side : {Side::left, Side::right}) {
+        const double a = at(first, u, side), b = at(second, u, side);
+        worst_sum = std::max(worst_sum, std::abs(at(*total, u, side) - (a + b)) / ulp_of(size));
+        // a and b are rounded to half an ulp themselves: twice 1/2 on either side of theirs.
+        const double error = std::abs(at(*scaled, u, side) - a * b);
+        worst_product = std::max(worst_product, error / ulp_of(largest_coordinate(*scaled)));
+      }
+    }
+  }
+  std::printf("sum %.2f, product %.2f ulp of max|P|\n", worst_sum, worst_product);
+  EXPECT_LE(worst_sum, 4);
+  EXPECT_LE(worst_product, 4);
+}
+
+TEST(SumAndProduct, AreAsSmoothAsTheLessSmoothCurve) {
+  // A quadratic with a simple knot is C1, and so is its product with a line: multiplicity 3 - 1.
+  const NurbsCurve bump = made(spec_of(2, {0, 1, 0, 2}));
+  const auto scaled = product(bump, made(spec_of(1, {1, 3})));
+  ASSERT_TRUE(scaled) << scaled.error().message;
+  EXPECT_THAT(scaled->knots(), ElementsAre(0, 0, 0, 0, 0.5, 0.5, 1, 1, 1, 1));
+  double left[2], right[2];
+  scaled->derivatives(0.5, 1, Side::left, left);
+  scaled->derivatives(0.5, 1, Side::right, right);
+  EXPECT_NEAR(left[1], right[1], 1e-15);
+}
+
+TEST(SumAndProduct, KeepJumpsWithBothTheirSides) {
+  const NurbsCurve line = made(spec_of(1, {1, 3}));
+  for (const Side side : {Side::left, Side::right}) {
+    const double v = side == Side::left ? 1 : -1;
+    EXPECT_EQ(at(*sum(made(saw()), line), 0.25, side), v + 1.5);
+    EXPECT_EQ(at(*product(line, made(saw())), 0.25, side), v * 1.5);
+  }
+  EXPECT_THAT(product(line, made(saw()))->jumps(), ElementsAre(0.25));
+}
+
+TEST(Product, OfAScalarScalesEveryCoordinate) {
+  CurveSpec arc = spec_of(2, {1, 0, 1, 1, 0, 1}, {}, {1, 1, 2});
+  arc.dim = 2;
+  const NurbsCurve circle = made(arc), gain = made(spec_of(1, {2, 4}));
+  for (const auto& scaled : {*product(circle, gain), *product(gain, circle)}) {
+    double out[2];
+    scaled.evaluate(0.5, out);
+    EXPECT_NEAR(out[0], 3 * 0.6, 1e-15);
+    EXPECT_NEAR(out[1], 3 * 0.8, 1e-15);
+  }
+  CurveSpec space = spec_of(1, {0, 0, 0, 1, 1, 1});
+  space.dim = 3;
+  EXPECT_EQ(product(circle, made(space)).error().code, ErrorCode::dimension_mismatch);
+}
+
+TEST(SumAndProduct, ReportWhatDoesNotFit) {
+  const NurbsCurve line = made(spec_of(1, {0, 1}));
+  const NurbsCurve later = made(spec_of(1, {0, 1}, {0, 0, 2, 2}));
+  EXPECT_EQ(sum(line, later).error().message,
+            "curves 'example' and 'example': their domains 0..1 and 0..2 differ; reparametrize() "
+            "makes them equal");
+  EXPECT_EQ(product(line, later).error().code, ErrorCode::parameter_out_of_range);
+  const NurbsCurve high = made(spec_of(8, {0, 1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(product(high, high).error().message,
+            "curve 'example' with curve 'example': degree 16 is outside 1..15");
+  const NurbsCurve large = made(spec_of(1, {1e6, 1e6}));
+  EXPECT_EQ(product(large, large).error().code, ErrorCode::coordinate_out_of_range);
+}
+
+// s^2 of (t + t^2) / 2 is t^2 / 4 + t^3 / 2 + t^4 / 4.
+TEST(Compose, OfTwoParabolasByHand) {
+  const auto both = compose(made(spec_of(2, {0, 0, 1})), made(spec_of(2, {0, 0.25, 1})));
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_EQ(both->degree(), 4);
+  for (double t = 0; t <= 1; t += 0.125) {
+    const double inner = (t + t * t) / 2;
+    EXPECT_EQ(at(*both, t), inner * inner);
+  }
+}
+
+TEST(Compose, IsPointwise) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  for (int round = 0; round < support::test_count(1000); ++round) {
+    CurveSpec map = random_spec(dice, 1 + dice.below(4)), shape = spec_of(1 + dice.below(3), {});
+    map.knots.clear();
+    map.dim = 1;
+    map.periodic = false;
+    for (double& w : map.weights) w = dice.between(0.25, 4);
+    for (double& x : map.points) x = dice.between(-1, 1);
+    const int n = shape.degree + 1 + dice.below(4);
+    for (int i = 0; i < n; ++i) shape.points.push_back(dice.unit());
+    if (dice.one_in(2)) {
+      for (int i = 0; i < n; ++i) shape.weights.push_back(dice.between(0.25, 4));
+    }
+    map.weights.resize(map.weights.empty() ? 0 : map.points.size(), 1.0);
+    const NurbsCurve outer = made(map), inner = made(shape);
+    const auto both = compose(outer, inner);
+    ASSERT_TRUE(both) << both.error().message;
+    EXPECT_THAT(both->jumps(), IsEmpty());
+    for (int i = 0; i < 20; ++i) {
+      const double u = dice.unit();
+      const double v = at(inner, u);
+      double slope[2];
+      outer.derivatives(v, 1, Side::right, slope);
+      // v is rounded, which the slope there tells; and a crossing is, within 2^-53 of u: slopes of
+      // these curves, inner times outer and on both sides of a knot, stay below 64 together.
+      const double allowed =
+          4 * ulp_of(largest_coordinate(*both)) + std::abs(slope[1]) * 0x1p-53 + 64 * 0x1p-53;
+      worst = std::max(worst, std::abs(at(*both, u) - at(outer, v)) / allowed);
+    }
+  }
+  std::printf("worst %.3f of what is allowed\n", worst);
+  EXPECT_LE(worst, 1);
+}
+
+TEST(Compose, CrossesCornersAtKnots) {
+  // A hard limiter at +-1/2 over a line from -1 to 1, whose knots are at -1/2 and 1/2.
+  const NurbsCurve limiter = made(spec_of(1, {-0.5, -0.5, 0.5, 0.5}, {-1, -1, -0.5, 0.5, 1, 1}));
+  const auto limited = compose(limiter, made(spec_of(1, {-1, 1})));
+  ASSERT_TRUE(limited) << limited.error().message;
+  EXPECT_THAT(limited->knots(), ElementsAre(0, 0, 0.25, 0.75, 1, 1));
+  EXPECT_THAT(limited->points(), ElementsAre(-0.5, -0.5, 0.5, 0.5));
+}
+
+TEST(Compose, AJumpOfTheOuterCurveIsOneWhereTheInnerCrossesIt) {
+  const auto both = compose(made(saw()), made(spec_of(2, {0, 0, 1})));
+  ASSERT_TRUE(both) << both.error().message;  // u^2 = 1/4 at 1/2
+  EXPECT_THAT(both->jumps(), ElementsAre(0.5));
+  EXPECT_EQ(at(*both, 0.5, Side::left), 1);
+  EXPECT_EQ(at(*both, 0.5, Side::right), -1);
+  // Downwards the sides change places.
+  const auto down = compose(made(saw()), made(spec_of(1, {1, 0})));
+  EXPECT_EQ(at(*down, 0.75, Side::left), -1);
+  EXPECT_EQ(at(*down, 0.75, Side::right), 1);
+}
+
+TEST(Compose, ATouchIsNoCrossingAndAStretchAtAJumpTakesTheRightSide) {
+  // (1 - 2 u)^2 / 2 + 1/4 touches 1/4 from above at 1/2.
+  const auto touched = compose(made(saw()), made(spec_of(2, {0.75, -0.25, 0.75})));
+  ASSERT_TRUE(touched) << touched.error().message;
+  EXPECT_THAT(touched->jumps(), IsEmpty());
+  EXPECT_EQ(at(*touched, 0.5), -1);
+  const auto resting = compose(made(saw()), made(spec_of(3, {0.25, 0.25, 0.25, 0.25, 0.25, 0.25})));
+  ASSERT_TRUE(resting) << resting.error().message;
+  EXPECT_THAT(resting->points(), testing::Each(-1));
+}
+
+TEST(Compose, JumpsOfTheInnerCurveStay) {
+  const auto both = compose(made(spec_of(2, {0, 0, 1}, {-1, -1, -1, 1, 1, 1})), made(saw()));
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_THAT(both->jumps(), ElementsAre(0.25));
+  EXPECT_EQ(at(*both, 0.25, Side::left), 1);
+  EXPECT_EQ(at(*both, 0.25, Side::right), 0);
+}
+
+TEST(Compose, APeriodicWaveThroughAShaperGivesOneClampedPeriod) {
+  CurveSpec wave = spec_of(2, {0, 0.9, 0, -0.9});
+  wave.periodic = true;
+  const NurbsCurve inner = made(wave);
+  const NurbsCurve shaper = made(spec_of(3, {-1, -0.2, 0.2, 1}, {-1, -1, -1, -1, 1, 1, 1, 1}));
+  const auto shaped = compose(shaper, inner);
+  ASSERT_TRUE(shaped) << shaped.error().message;
+  EXPECT_TRUE(shaped->is_clamped());
+  EXPECT_EQ(at(*shaped, 0), at(*shaped, 1));
+  for (double u = 0; u < 1; u += 0.0625) {
+    EXPECT_NEAR(at(*shaped, u), at(shaper, at(inner, u)), 4e-16);
+  }
+}
+
+// A bend is itself a composition, with a rational line.
+TEST(Compose, WithAMoebiusLineIsABend) {
+  const NurbsCurve curve = made(spec_of(3, {0, 1, -1, 2}));
+  const auto composed = compose(curve, made(spec_of(1, {0, 1}, {}, {4, 1})));
+  ASSERT_TRUE(composed) << composed.error().message;
+  const auto bent = bend(curve, 4);
+  EXPECT_THAT(composed->points(), ElementsAreArray(bent->points()));
+  EXPECT_THAT(composed->weights(), ElementsAreArray(bent->weights()));
+}
+
+TEST(Compose, HalvesSpansWhoseHandlesReachFarOutOfARationalSegment) {
+  const NurbsCurve outer = made(spec_of(2, {0, 1, 0}, {}, {1, 1e-3, 1}));
+  // Values in 0..1, handles at 2 and -1.
+  const NurbsCurve inner = made(spec_of(3, {0.5, 1.55, -0.55, 0.5}));
+  const auto both = compose(outer, inner);
+  ASSERT_TRUE(both) << both.error().message;
+  for (double u = 0; u <= 1; u += 1.0 / 64) {
+    EXPECT_NEAR(at(*both, u), at(outer, at(inner, u)), 1e-14) << u;
+  }
+}
+
+TEST(Compose, ReportsWhatDoesNotFit) {
+  const NurbsCurve unit = made(spec_of(1, {0, 1}));
+  const auto error = compose(unit, made(spec_of(2, {0, 3, 0})));
+  ASSERT_FALSE(error);
+  EXPECT_EQ(error.error().code, ErrorCode::parameter_out_of_range);
+  EXPECT_EQ(error.error().message,
+            "curve 'example' of curve 'example': the inner one is 1.5 at u = 0.5, outside of the "
+            "outer one's domain 0..1");
+  CurveSpec plane = spec_of(1, {0, 0, 1, 1});
+  plane.dim = 2;
+  EXPECT_EQ(compose(unit, made(plane)).error().code, ErrorCode::not_scalar);
+  const NurbsCurve quartic = made(spec_of(4, {0, 0, 0, 1, 1}));
+  EXPECT_EQ(compose(quartic, quartic).error().code, ErrorCode::degree_out_of_range);
+  EXPECT_TRUE(compose(unit, made(spec_of(2, {0, 2, 0}))));  // its top is 1, exactly
+}
+
+}  // namespace
+}  // namespace knotwave::test

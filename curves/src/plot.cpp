@@ -238,6 +238,7 @@ class CurvePicture {
       const double width = text_width(a, 12) + text_width(b, 12) + 38 * 2;
       return frame_.left + width < frame_.right;
     };
+    if (!fits(point, "")) return;
     if (!point.empty() && fits(point + more_point, knot)) point += more_point;
     if (!knot.empty() && fits(point, knot + more_knot)) knot += more_knot;
     double x = frame_.left;

@@ -81,13 +81,15 @@ std::string fitted(const std::string& text, double size, double width) {
 
 void draw_title(Scene& scene, double left, double right, double y, const std::string& name,
                 const std::string& description) {
-  constexpr double kNameSize = 20, kSize = 14, kGap = 24;
+  constexpr double kNameSize = 20, kSize = 14, kGap = 24, kEdge = 16;
   constexpr double kBoldness = 1.1;  // bold letters are wider by as much, nearly
-  const double room = right - left - kGap;
   const double words = text_width(description, kSize);
+  const double letters = kBoldness * text_width(name, kNameSize);
+  if (letters + words + kGap > right - left) left = std::min(left, kEdge);
+  const double room = right - left - kGap;
   // A long name has what the description leaves, but at least two fifths.
-  const double name_room = std::max(0.4 * room, room - words) / kBoldness;
-  const std::string shown = fitted(name, kNameSize, name_room);
+  const double name_room = letters <= 0.6 * room ? letters : std::max(0.4 * room, room - words);
+  const std::string shown = fitted(name, kNameSize, name_room / kBoldness);
   scene.text({left, y}, shown, kInk, kNameSize, Shape::Anchor::start, true);
   const double rest = room - kBoldness * text_width(shown, kNameSize);
   const std::string about = fitted(description, kSize, rest);

@@ -55,6 +55,15 @@ TEST_F(Overlap, TwoOutputsAreTwoFiles) {
   render({"-o", "stems/channel-03.wav", "--stems", "stems"});  // channel 3 plays no note
 }
 
+TEST_F(Overlap, StemsReplaceNoInput) {
+  fs::create_directory(file("stems"));
+  fs::rename(file("small.mid"), file("stems/channel-01.wav"));
+  const auto before = all_files();
+  expect_refused(run({"small.toml", "stems/channel-01.wav", "-o", "a.wav", "--stems", "stems"}),
+                 "--stems 'stems/channel-01.wav' would overwrite the score 'stems/channel-01.wav'");
+  EXPECT_EQ(all_files(), before);
+}
+
 TEST_F(Overlap, LinksAreFollowed) {
   fs::rename(file("small.mid"), file("small.wav"));
   fs::create_symlink("small.wav", file("small.mid"));

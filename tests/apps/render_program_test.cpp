@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // knotwave-render as a user runs it: what it prints, writes and ends with.
+#include <cmath>
 #include <cstring>
 #include <regex>
 
@@ -88,6 +89,16 @@ TEST_F(RenderProgram, AMapThatMovesACurveNothingPlaysIsTold) {
   const auto busy = run({"busy.toml", "small.mid", "--check"});
   EXPECT_EQ(busy.exit_code, 0);
   EXPECT_THAT(busy.err, IsEmpty());
+}
+
+TEST_F(RenderProgram, AConstantCurveAsAWaveIsSilence) {
+  const std::string flat = "[curves.flat]\ndegree = 1\npoints = [0.5, 0.5]\n";
+  std::string patch = kSmallPatch + flat;
+  patch.replace(patch.find("\"sine\""), 6, "\"flat\"");
+  write("flat.toml", patch);
+  const auto samples = floats_in(run({"flat.toml", "small.mid", "-o", "-"}).out);
+  EXPECT_GT(samples.size(), 2 * 48000u);
+  for (const float sample : samples) ASSERT_LT(std::abs(sample), 1e-15f);
 }
 
 TEST_F(RenderProgram, AWaveFrameThatNoCycleHasIsToldWithItsPlace) {

@@ -156,7 +156,7 @@ TEST(Plot, TextsOfSmallPicturesDoNotMeetEachOtherOrTheEdge) {
   for (const std::string& name : {std::string("decay60"), std::string(64, 'm')}) {
     spec.name = name;
     const auto curve = *NurbsCurve::create(spec);
-    for (const auto& [width, height] : {std::pair{480, 270}, {320, 240}, {960, 540}}) {
+    for (const auto& [width, height] : {std::pair{480, 270}, {320, 240}, {240, 200}, {960, 540}}) {
       curves::PlotOptions options;
       options.width_px = width;
       options.height_px = height;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
-#include "knotwave/engine/patch.h"
-
+#include "bank_input/bank_input.h"
 #include "curve_input.h"
 #include "verbs.h"
 
@@ -26,13 +25,15 @@ Result<std::string> checked(const std::string& path) {
     if (!set) return set.error();
     return "curve file, " + count_of(*set);
   }
-  const auto bank = engine::read_bank(path);
+  // Compiled as for playing: what is ok here can be rendered.
+  const auto bank = bank_input::read(path);
   if (!bank) return bank.error();
+  const engine::BankSpec& spec = bank->spec;
   if (file->kind == curves::FileKind::bank) {
-    return "bank, " + std::to_string(bank->patches.size()) + " patches, " +
-           std::to_string(bank->entries.size()) + " entries";
+    return "bank, " + std::to_string(spec.patches.size()) + " patches, " +
+           std::to_string(spec.entries.size()) + " entries";
   }
-  const engine::PatchSpec& patch = bank->patches.front();
+  const engine::PatchSpec& patch = spec.patches.front();
   return "patch, " + count_of(patch.curves) + ", " + count_of(patch.maps.size(), "map");
 }
 

@@ -13,11 +13,11 @@ EventFeed::EventFeed(const io::Song& song, int rate_hz)
   }
 }
 
-engine::Event EventFeed::song_event(const io::SongEvent& event) const {
+engine::Event engine_event(const io::Song& song, const io::SongEvent& event) {
   engine::Event out;
   for (int i = 0; i < 3; ++i) out.midi.bytes[i] = event.bytes[i];
   if (event.sysex_size > 0) {
-    out.midi.sysex = song_.sysex_bytes.data() + event.sysex_begin;
+    out.midi.sysex = song.sysex_bytes.data() + event.sysex_begin;
     out.midi.sysex_size = event.sysex_size;
   }
   return out;
@@ -38,7 +38,7 @@ std::optional<engine::Event> EventFeed::peek() {
   }
   if (has_event) {
     const io::SongEvent& next = song_.events[next_event_];
-    event = song_event(next);
+    event = engine_event(song_, next);
     event.midi.time = clock_.at(next.tick);
     return event;
   }

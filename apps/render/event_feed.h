@@ -11,6 +11,9 @@
 
 namespace knotwave::render {
 
+/// A message of a song, without its time.
+engine::Event engine_event(const io::Song& song, const io::SongEvent& event);
+
 /// MIDI messages and tempo changes by time; at equal ticks the tempo comes first. At the end of the
 /// song, after everything else, all notes off.
 class EventFeed {
@@ -27,7 +30,6 @@ class EventFeed {
 
  private:
   std::optional<engine::Event> peek();
-  engine::Event song_event(const io::SongEvent& event) const;
 
   const io::Song& song_;
   io::TickClock clock_;

@@ -5,7 +5,9 @@
 #include <new>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <unistd.h>
 
@@ -14,6 +16,7 @@
 
 #include "command_line/exit_codes.h"
 #include "command_line/messages.h"
+#include "missing_patches.h"
 #include "options.h"
 #include "output_places.h"
 #include "render_job.h"
@@ -76,7 +79,11 @@ int say_report(const RenderOptions& options, const RenderReport& report,
 }
 
 int check(const RenderOptions& options, const RenderInput& input) {
-  if (!options.quiet) say_warnings(input.warnings);
+  std::vector<std::string> warnings = input.warnings;
+  if (const std::string what = find_missing_patches(input); !what.empty()) {
+    warnings.push_back(input.score_name + ": warning: " + what);
+  }
+  if (!options.quiet) say_warnings(warnings);
   std::printf("%s\n", check_line(options, input).c_str());
   return kExitOk;
 }

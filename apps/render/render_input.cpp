@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bank_input/bank_input.h"
 #include "demo.h"
 #include "event_feed.h"
 #include "patch_warnings.h"
@@ -20,58 +21,17 @@ std::string warning_text(const std::string& file, const io::SongWarning& warning
   return file + ": byte " + std::to_string(warning.offset) + ": warning: " + warning.message;
 }
 
-/// The engine knows cycles by their file, so a file is cut in one way only.
-Error two_frames(const engine::PatchSpec& patch, const std::string& oscillator,
-                 const engine::WaveCycles& known, int frame) {
-  Error error = fail(ErrorCode::value_out_of_range,
-                     "'" + known.file + "' is cut into cycles of " + std::to_string(known.frame) +
-                         " frames elsewhere, and of " + std::to_string(frame) +
-                         " here (wave_frame): use a copy of the file");
-  const engine::Place place = patch.place_of("oscillators." + oscillator + ".wave_frame");
-  error.source = patch.source_name;
-  error.line = place.line;
-  error.column = place.column;
-  return error;
-}
-
-/// The cycles of every sound file the patches name, each read once.
-Result<std::vector<engine::WaveCycles>> read_waves(const engine::BankSpec& spec,
-                                                   std::vector<std::string>& warnings) {
-  std::vector<engine::WaveCycles> waves;
-  for (const engine::PatchSpec& patch : spec.patches) {
-    for (const engine::OscillatorSpec& oscillator : patch.oscillators) {
-      const std::string& file = oscillator.wave_file;
-      const int frame = oscillator.wave_frame;
-      if (file.empty()) continue;
-      const auto known = std::find_if(waves.begin(), waves.end(),
-                                      [&](const auto& wave) { return wave.file == file; });
-      if (known != waves.end()) {
-        if (frame > 0 && frame != known->frame)
-          return two_frames(patch, oscillator.name, *known, frame);
-        continue;
-      }
-      auto cycles = io::read_cycles(file, frame);
-      if (!cycles) return std::move(cycles).error();
-      for (const auto& warning : cycles->warnings) warnings.push_back(warning_text(file, warning));
-      waves.push_back({file, cycles->frame, cycles->rows, std::move(cycles->samples)});
-    }
-  }
-  return waves;
-}
-
 Result<void> read_bank(const std::string& path, RenderInput& input) {
-  const auto spec = engine::read_bank(path);
-  if (!spec) return spec.error();
-  for (const auto& patch : spec->patches) {
+  auto bank = bank_input::read(path);
+  if (!bank) return std::move(bank).error();
+  input.bank = std::move(bank->program);
+  for (const auto& patch : bank->spec.patches) {
     for (auto& warning : patch_warnings(patch)) input.warnings.push_back(std::move(warning));
   }
-  const auto waves = read_waves(*spec, input.warnings);
-  if (!waves) return waves.error();
-  for (const auto& file : spec->files) input.files.push_back({"a file the patch names,", file});
-  for (const auto& wave : *waves) input.files.push_back({"a sound the patch names,", wave.file});
-  auto bank = engine::BankProgram::create(*spec, *waves);
-  if (!bank) return std::move(bank).error();
-  input.bank = std::move(bank).value();
+  for (auto& warning : bank->warnings) input.warnings.push_back(std::move(warning));
+  for (const auto& file : bank->spec.files)
+    input.files.push_back({"a file the patch names,", file});
+  for (const auto& file : bank->sounds) input.files.push_back({"a sound the patch names,", file});
   return {};
 }
 

@@ -14,6 +14,7 @@
 #include "knotwave/engine/engine.h"
 
 #include "event_feed.h"
+#include "missing_patches.h"
 #include "output_places.h"
 #include "progress.h"
 #include "sound_sink.h"
@@ -207,6 +208,7 @@ RenderReport RenderJob::report(double elapsed_s) const {
   report.realtime_factor = elapsed_s > 0 ? report.seconds() / elapsed_s : 0;
   report.voices_peak = counters.voices_peak;
   report.voices_stolen = counters.voices_stolen;
+  report.notes_without_patch = counters.notes_without_patch;
   report.clipped_samples = mix_->writer().clipped();
   for (int channel = 0; channel < kMidiChannels; ++channel) {
     const auto& stem = stems_[static_cast<std::size_t>(channel)];
@@ -233,6 +235,9 @@ void RenderJob::add_closing_warnings(RenderReport& report) const {
   }
   if (counters.notes_dropped > 0) {
     add(std::to_string(counters.notes_dropped) + " notes found no voice and are missing");
+  }
+  if (const std::string what = missing_patches(counters); !what.empty()) {
+    report.warnings.push_back(input_.score_name + ": warning: " + what);
   }
 }
 

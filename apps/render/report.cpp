@@ -69,7 +69,11 @@ std::string report_line(const RenderReport& r) {
          std::to_string(r.rate_hz) + " Hz, " + std::to_string(r.channels) + " channels, peak " +
          fixed(r.peak_dbfs, 2) + " dBFS, rms " + fixed(r.rms_dbfs, 2) + " dBFS, seed " +
          std::to_string(r.seed) + ", sha256 " + r.sha256 + ", " + fixed(r.realtime_factor, 1) +
-         " times real time";
+         " times real time" +
+         (r.notes_without_patch > 0
+              ? ", " + std::to_string(r.notes_without_patch) +
+                    (r.notes_without_patch == 1 ? " note" : " notes") + " without a patch"
+              : "");
 }
 
 std::string report_json(const RenderReport& r) {
@@ -90,6 +94,7 @@ std::string report_json(const RenderReport& r) {
   object.add("realtime_factor", json_number(r.realtime_factor, 2));
   object.add("voices_peak", std::to_string(r.voices_peak));
   object.add("voices_stolen", std::to_string(r.voices_stolen));
+  object.add("notes_without_patch", std::to_string(r.notes_without_patch));
   object.add("clipped_samples", std::to_string(r.clipped_samples));
   object.add("stems", json_list(stems));
   object.add("warnings", json_list(warnings));

@@ -29,6 +29,7 @@ struct RenderReport {
   double realtime_factor = 0;
   int voices_peak = 0;
   std::int64_t voices_stolen = 0;
+  std::int64_t notes_without_patch = 0;
   std::int64_t clipped_samples = 0;
   std::vector<StemReport> stems;
   std::vector<std::string> warnings;

@@ -98,6 +98,29 @@ TEST_F(CurveApp, CheckNamesThePlaceOfAFaultAndGoesOn) {
   EXPECT_EQ(run({"check", folder_.file("none.toml")}).exit_code, 1);
 }
 
+TEST_F(CurveApp, CheckCompilesWhatItCallsOk) {
+  const auto checked = [&](const std::string& curve, const std::string& more = "") {
+    const std::string path = folder_.file("p.toml");
+    EXPECT_TRUE(base::write_file(path,
+                                 "format = 1\nkind = 'patch'\n[oscillators.a]\nwave = 'sine'\n"
+                                 "[envelopes.amp]\ncurve = 'c'\n[curves.c]\n" +
+                                     curve + more));
+    const ProgramRun done = run({"check", path});
+    EXPECT_EQ(done.exit_code, done.err.empty() ? 0 : 1);
+    return done.err.substr(std::min(path.size() + 1, done.err.size()));
+  };
+  const std::string arch = "degree = 2\npoints = [0, 1, 0]\nweights = [1, 5, 1]\n";
+  EXPECT_EQ(checked(arch), "");
+  EXPECT_EQ(checked("degree = 8\npoints = [0, 1, 1, 1, 1, 1, 1, 1, 0]\n"),
+            "6:9: error: envelope 'amp': an envelope's curve may have degree 1 to 7: 'c' has 8; "
+            "draw it with a lower degree and more points\n");
+  EXPECT_THAT(checked("degree = 1\npoints = [0, 1, 1, 0]\nknots = [0, 0, 1e-300, 0.5, 1, 1]\n"),
+              StartsWith("6:9: error: envelope 'amp': "));
+  EXPECT_THAT(
+      checked(arch, "[[maps]]\nfrom = 'mod'\nto = 'curve.c.weight.1'\nlow = 6\nhigh = 10\n"),
+      StartsWith("14:7: error: map 1: low (6) to high (10) leaves out 5"));
+}
+
 TEST_F(CurveApp, EvalPrintsTabsAnd17Digits) {
   EXPECT_EQ(run({"eval", file_ + "#arc", "--at", "0,0.5,1"}).out,
             "0\t1\t0\n"

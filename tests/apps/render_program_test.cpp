@@ -103,7 +103,7 @@ TEST_F(RenderProgram, AConstantCurveAsAWaveIsSilence) {
 
 TEST_F(RenderProgram, AWaveFrameThatNoCycleHasIsToldWithItsPlace) {
   render({"-o", "wave.wav"});
-  for (const auto& [frame, is_good] : {std::pair{3, false}, {4, true}, {65537, false}}) {
+  for (const auto& [frame, is_good] : {std::pair{3, false}, {64, true}, {65537, false}}) {
     write("cut.toml",
           "format = 1\nkind = \"patch\"\nname = \"cut\"\n[oscillators.a]\nwave_file = "
           "\"wave.wav\"\nwave_frame = " +
@@ -158,6 +158,26 @@ TEST_F(RenderProgram, JsonHoldsTheReport) {
   EXPECT_THAT(done.out, HasSubstr("\"seed\": 9"));
   render({"-o", "out.wav", "--json", "out.json"});
   EXPECT_THAT(read("out.json"), HasSubstr("\"path\": \"out.wav\""));
+}
+
+TEST_F(RenderProgram, NotesWithoutAPatchAreToldByRenderAndCheck) {
+  write("bank.toml",
+        "format = 1\nkind = 'bank'\n[[programs]]\nprogram = 0\npatch = 'small.toml'\n");
+  io::Song song = small_song();
+  song.events.insert(song.events.begin(), io::SongEvent{0, 0, {0xC4, 77, 0}, 0, 0});
+  write_song("other.mid", song);
+  const std::string warning =
+      "other.mid: warning: 1 note is silent: the bank has no patch for program 77 of bank 0:0 "
+      "(channel 5); numbers count from 0\n";
+  const auto done = run({"bank.toml", "other.mid", "-o", "out.wav", "--json", "out.json"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr(warning));
+  EXPECT_THAT(done.out, HasSubstr(", 1 note without a patch\n"));
+  EXPECT_THAT(read("out.json"), HasSubstr("\"notes_without_patch\": 1"));
+  EXPECT_THAT(read("out.json"), HasSubstr("no patch for program 77"));
+  const auto checked = run({"--check", "bank.toml", "other.mid"});
+  EXPECT_EQ(checked.exit_code, 0);
+  EXPECT_EQ(checked.err, warning);
 }
 
 TEST_F(RenderProgram, AFixedTailIsExactAndAutoEndsInSilence) {
@@ -232,6 +252,11 @@ TEST_F(RenderProgram, SampledCyclesArePlayedAndAFileIsCutInOneWayOnly) {
   const auto twice = run({"twice.toml", "small.mid", "-o", "out.wav"});
   EXPECT_EQ(twice.exit_code, 1);
   EXPECT_THAT(twice.err, HasSubstr("cycles of 512 frames elsewhere, and of 256 here"));
+  write("cycle.wav", "no sound");
+  const auto bad = run({"square.toml", "small.mid", "-o", "out.wav"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, testing::StartsWith("square.toml:9:13: error: oscillator 'a': "));
+  EXPECT_THAT(bad.err, HasSubstr("cycle.wav"));
 }
 
 TEST_F(RenderProgram, DemosNeedNoOtherFile) {

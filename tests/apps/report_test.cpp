@@ -34,6 +34,12 @@ TEST(RenderReport, OneLineSaysAll) {
             "sha256 ab12, 41.2 times real time");
 }
 
+TEST(RenderReport, TheLineSaysHowManyNotesTheBankHasNoPatchFor) {
+  RenderReport report = example();
+  report.notes_without_patch = 3;
+  EXPECT_THAT(report_line(report), HasSubstr("41.2 times real time, 3 notes without a patch"));
+}
+
 TEST(RenderReport, SilenceIsMinusInfinityAndNullInJson) {
   RenderReport report = example();
   report.peak_dbfs = report.rms_dbfs = -std::numeric_limits<double>::infinity();
@@ -56,6 +62,7 @@ TEST(RenderReport, JsonHasItsKeysInOrder) {
   "realtime_factor": 41.25,
   "voices_peak": 12,
   "voices_stolen": 0,
+  "notes_without_patch": 0,
   "clipped_samples": 0,
   "stems": [],
   "warnings": []

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// A patch or bank with every file it names, read and compiled: what is played and what is checked.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "knotwave/engine/bank_program.h"
+
+namespace knotwave::bank_input {
+
+struct BankInput {
+  engine::BankSpec spec;
+  std::unique_ptr<const engine::BankProgram> program;
+  std::vector<std::string> sounds;    ///< the sound files that were read
+  std::vector<std::string> warnings;  ///< each names its file
+};
+
+/// Errors: those of read_bank(), of the sound files (at their place in the patch), of
+/// BankProgram::create().
+Result<BankInput> read(const std::string& path);
+
+}  // namespace knotwave::bank_input

@@ -147,6 +147,7 @@ def finer(rng):
                      for u, side in places(rng, inside(curve) + knots)]
             yield "refine", knots, [curve], looks
             yield "elevate_degree", [1 + rng.randrange(5)], [curve], looks
+            yield "elevate_and_reduce", [], [curve], looks
 
 
 def combinations(rng):

@@ -35,13 +35,15 @@ Result<NurbsCurve> clamped(const NurbsCurve& curve) {
 // points, counted from another one on.
 Result<NurbsCurve> with_seam_at_start(const NurbsCurve& curve) {
   CurveSpec spec = curve.spec();
-  const auto at_end = std::ranges::count(spec.knots, curve.u_max());
+  const auto at_end = std::count(spec.knots.begin(), spec.knots.end(), curve.u_max());
   if (!curve.is_periodic() || at_end == 1) return curve;
   const auto turned = static_cast<long>(at_end) - 1;
   spec.knots.erase(spec.knots.end() - turned, spec.knots.end());
   spec.knots.insert(spec.knots.begin(), static_cast<std::size_t>(turned), curve.u_min());
-  std::ranges::rotate(spec.points, spec.points.end() - turned * spec.dim);
-  if (!spec.weights.empty()) std::ranges::rotate(spec.weights, spec.weights.end() - turned);
+  std::rotate(spec.points.begin(), spec.points.end() - turned * spec.dim, spec.points.end());
+  if (!spec.weights.empty()) {
+    std::rotate(spec.weights.begin(), spec.weights.end() - turned, spec.weights.end());
+  }
   return NurbsCurve::create(std::move(spec));
 }
 
@@ -55,10 +57,14 @@ Result<NurbsCurve> raised(const NurbsCurve& curve, int degree, bool periodic) {
   return elevate_degree(curve, degree - curve.degree());
 }
 
+bool equal_numbers(std::span<const double> a, std::span<const double> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
 bool has_same_basis(const NurbsCurve& first, const NurbsCurve& second) {
   return first.degree() == second.degree() && first.is_periodic() == second.is_periodic() &&
-         std::ranges::equal(first.knots(), second.knots()) &&
-         std::ranges::equal(first.jumps(), second.jumps());
+         equal_numbers(first.knots(), second.knots()) &&
+         equal_numbers(first.jumps(), second.jumps());
 }
 
 // `curve` over the domain of `like`; knots that rounding moved beside one of `like` are moved onto
@@ -94,7 +100,9 @@ Result<NurbsCurve> with_knots_of(const NurbsCurve& curve, const NurbsCurve& othe
   }
   CurveSpec spec = curve.spec();
   for (const double jump : other.jumps()) {
-    if (std::ranges::find(spec.jumps, jump) == spec.jumps.end()) spec.jumps.push_back(jump);
+    if (std::find(spec.jumps.begin(), spec.jumps.end(), jump) == spec.jumps.end()) {
+      spec.jumps.push_back(jump);
+    }
   }
   std::sort(spec.jumps.begin(), spec.jumps.end());
   all.write_to(spec);

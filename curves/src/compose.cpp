@@ -160,7 +160,8 @@ struct Outer {
   }
   bool has_jump_between(std::size_t a, std::size_t b) const {
     const double low = starts[std::min(a, b)], high = starts[std::max(a, b)];
-    return std::ranges::any_of(curve.jumps(), [=](double u) { return u > low && u <= high; });
+    return std::any_of(curve.jumps().begin(), curve.jumps().end(),
+                       [=](double u) { return u > low && u <= high; });
   }
 };
 
@@ -236,8 +237,9 @@ class Composition {
       if (auto good = add(std::move(piece), halvings + 1); !good) return good;
       return add(std::move(after), halvings + 1);
     }
-    const bool may_jump = std::ranges::find(inner_.jumps(), piece.u0) != inner_.jumps().end() ||
-                          outer_.has_jump_between(index, last_index_);
+    const bool may_jump =
+        std::find(inner_.jumps().begin(), inner_.jumps().end(), piece.u0) != inner_.jumps().end() ||
+        outer_.has_jump_between(index, last_index_);
     chain_.append(*part, may_jump ? 0 : std::numeric_limits<double>::infinity());
     last_index_ = index;
     return {};

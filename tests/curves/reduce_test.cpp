@@ -337,5 +337,99 @@ TEST(RemoveKnots, KeepsAJumpThatIsLargerThanTheTolerance) {
   EXPECT_THAT(less->curve.points(), ElementsAre(0, 1, -1, 0));
 }
 
+// geomdl issue 136: a curve whose degree was raised did not come back.
+TEST(ReduceDegree, OfElevateDegreeGivesTheCurveBack) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  int refused = 0, done = 0;
+  for (int round = 0; round < support::test_count(400); ++round) {
+    const NurbsCurve curve = random_curve(dice, 1 + round % (curves::kMaxDegree - 1));
+    const NurbsCurve raised = *elevate_degree(curve);
+    const auto back = reduce_degree(raised, 4 * few_ulp(curve));
+    ++done;
+    if (!back) {
+      std::printf("degree %d: %s\n", curve.degree(), back.error().message.c_str());
+      ++refused;
+      continue;
+    }
+    EXPECT_EQ(back->curve.degree(), curve.degree());
+    EXPECT_EQ(back->curve.is_periodic(), curve.is_periodic());
+    if (curve.is_clamped() || curve.is_periodic()) {
+      EXPECT_THAT(back->curve.spec().knots, ElementsAreArray(curve.spec().knots));
+    }
+    worst = std::max(worst, distance_ulp(dice, curve, back->curve, curve.u_min(), curve.u_max()));
+  }
+  std::printf("%d of %d refused, worst of the others %.2f ulp of max|P|\n", refused, done, worst);
+  EXPECT_LE(worst, 4);
+  EXPECT_EQ(refused, 0);
+}
+
+TEST(ReduceDegree, OfARaisedCubicGivesItsPoints) {
+  const NurbsCurve cubic = made(spec_of(3, {0, 2, -1, 4, 3}, {0, 0, 0, 0, 0.5, 1, 1, 1, 1}));
+  const auto back = reduce_degree(*elevate_degree(cubic), 1e-14);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->removed, 1);
+  EXPECT_THAT(back->curve.points(), testing::Pointwise(testing::DoubleNear(1e-14), cubic.points()));
+}
+
+// t^p has 0 in all Bézier points but the last. With its ends kept no curve of degree p - 1 is
+// nearer than 2^(1-p) / (2 c)^p, c = cos(pi / 2p): the Chebyshev polynomial stretched until its
+// outer zeros are the ends. The least squares of Bézier points come within 4 times of that.
+TEST(ReduceDegree, OfOneSegmentIsWithin4TimesOfTheLeastError) {
+  for (int p = 2; p <= 15; ++p) {
+    std::vector<double> points(std::size_t(p + 1), 0.0);
+    points.back() = 1;
+    const auto less = reduce_degree(made(spec_of(p, points)), 1);
+    ASSERT_TRUE(less) << less.error().message;
+    const double least = std::pow(2, 1 - p) / std::pow(2 * std::cos(std::acos(-1.0) / (2 * p)), p);
+    EXPECT_GE(less->max_error, least * 0.9999);
+    EXPECT_LE(less->max_error, least * 4);
+    EXPECT_EQ(less->curve.points().front(), 0);
+    EXPECT_EQ(less->curve.points().back(), 1);
+  }
+}
+
+TEST(ReduceDegree, BoundIsNeverExceeded) {
+  Dice dice(support::test_seed());
+  int reduced = 0;
+  for (int round = 0; round < support::test_count(400); ++round) {
+    const NurbsCurve curve = random_curve(dice, 2 + round % (curves::kMaxDegree - 1));
+    const double size = largest_coordinate(curve);
+    const auto less = reduce_degree(curve, 1e6 * size);
+    if (!less) {
+      EXPECT_EQ(less.error().code, ErrorCode::error_bound_missed);
+      continue;
+    }
+    ++reduced;
+    EXPECT_LE(found_distance(dice, curve, less->curve, 100), less->max_error + 2 * ulp_of(size));
+  }
+  EXPECT_GT(reduced, 200);
+}
+
+TEST(ReduceDegree, KeepsJumpsAndCorners) {
+  CurveSpec spec =
+      spec_of(2, {0, 2, 1, -1, 3, 0, 1, 2}, {0, 0, 0, 0.25, 0.25, 0.5, 0.5, 0.5, 1, 1, 1});
+  spec.jumps = {0.5};
+  const NurbsCurve curve = made(spec);
+  const auto less = reduce_degree(curve, 2);
+  ASSERT_TRUE(less) << less.error().message;
+  EXPECT_THAT(less->curve.knots(), ElementsAre(0, 0, 0.25, 0.5, 0.5, 1, 1));
+  EXPECT_THAT(less->curve.jumps(), ElementsAre(0.5));
+  // x at the corner: (x/2 - 2)^2 + 2 (x - 1)^2 + ((x + 3)/2 + 1)^2 is least at 7/10.
+  EXPECT_THAT(less->curve.points(), ElementsAre(0, testing::DoubleEq(0.7), 3, 0, 2));
+}
+
+TEST(ReduceDegree, ReportsTheErrorItWouldMake) {
+  const auto error = reduce_degree(made(spec_of(2, {0, 1, 0})), 0.25);
+  ASSERT_FALSE(error);
+  EXPECT_EQ(error.error().code, ErrorCode::error_bound_missed);
+  EXPECT_EQ(error.error().message,
+            "curve 'example': at degree 1 it is up to 0.5 away, the tolerance is 0.25");
+  EXPECT_EQ(reduce_degree(made(spec_of(1, {0, 1})), 1).error().code,
+            ErrorCode::degree_out_of_range);
+  EXPECT_EQ(reduce_degree(made(spec_of(2, {0, 1, 0})), -1).error().code,
+            ErrorCode::value_out_of_range);
+}
+
 }  // namespace
 }  // namespace knotwave::test

@@ -15,7 +15,7 @@ namespace knotwave::curves {
 /// where 64 parts of a span don't get as near, still a bound.
 struct ReducedCurve {
   NurbsCurve curve;
-  int removed = 0;       ///< knots
+  int removed = 0;       ///< knots, or degrees
   double max_error = 0;  ///< 0 if nothing was removed
 };
 
@@ -32,5 +32,14 @@ Result<ReducedCurve> remove_knot(const NurbsCurve& curve, double u, int times, d
 /// measured against the curve given, not against the step before, so errors don't add up unseen. A
 /// knot that once was too dear stays. The bound is for the whole curve. Errors: value_out_of_range.
 Result<ReducedCurve> remove_knots(const NurbsCurve& curve, double tolerance);
+
+/// Degree p - 1, by least squares over the Bézier points: for one segment of a polynomial within 4
+/// times of the least error that keeps the ends. A knot of multiplicity m keeps its
+/// continuity, and has m - 1 then; a simple one stays, with one derivative less. Jumps stay, with
+/// both their values, and so do the ends. A curve that was elevated comes back: the same knots,
+/// values within 4 ulp of max|P|, at a tolerance of a few ulp. A periodic curve stays periodic, an
+/// unclamped one becomes clamped. Errors: degree_out_of_range (p = 1), error_bound_missed (the
+/// message has the error that reduction would make and the tolerance), value_out_of_range.
+Result<ReducedCurve> reduce_degree(const NurbsCurve& curve, double tolerance);
 
 }  // namespace knotwave::curves

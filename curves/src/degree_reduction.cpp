@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+// Degree reduction by least squares: the curve sought, cut into the Bézier segments of the curve
+// given and raised to its degree, shall have the same Bézier points, each counted relative to its
+// weight. For polynomials that is the best reduction in the mean square (Lutterkort, Peters & Reif,
+// Polynomial degree reduction in the L2-norm equals best Euclidean approximation of Bézier
+// coefficients, CAGD 16 (1999)); an elevated curve misses by no more than its own rounding. (A5.11
+// reduces span by span and then removes knots, each step with the noise of the one before.)
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "knotwave/base/document.h"
+#include "knotwave/curves/reduce.h"
+
+#include "curve_distance.h"
+#include "spec_layout.h"
+
+namespace knotwave::curves {
+namespace {
+
+using base::number_text;
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+
+constexpr std::size_t kChannels = kMaxDim + 1;
+DoubleDouble& channel(HomogeneousPoint& point, std::size_t c) {
+  return c < point.x.size() ? point.x[c] : point.w;
+}
+
+// The lower degree's curve with its knots and no points yet: knots one time less, simple ones kept.
+HomogeneousCurve reduced_frame(const HomogeneousCurve& curve) {
+  HomogeneousCurve frame;
+  const int p = curve.degree, q = p - 1;
+  frame.degree = q;
+  frame.dim = curve.dim;
+  frame.domain = curve.domain;
+  const auto end = curve.knots.end() - p - 1;  // of the domain
+  std::vector<Knot> inner;                     // from the start of the domain on
+  for (auto run =
+           std::lower_bound(curve.knots.begin(), curve.knots.end(), curve.knots[index_of(p)]);
+       run < end && *run < *end;) {
+    const auto next = std::upper_bound(run, curve.knots.end(), *run);
+    inner.insert(inner.end(), index_of(std::max(1, static_cast<int>(next - run) - 1)), *run);
+    run = next;
+  }
+  if (!curve.domain.periodic) {
+    frame.knots = inner;  // the clamped start has p of its p + 1
+    frame.knots.insert(frame.knots.end(), index_of(p), *end);
+  } else {
+    std::vector<double> written;
+    for (const Knot& knot : inner) written.push_back(knot.at);
+    written.push_back(curve.domain.high);
+    const auto all = expanded_knots(written, q, static_cast<int>(inner.size()), true);
+    frame.knots = KnotSequence{all, q, true}.all();
+  }
+  frame.points.resize(frame.knots.size() - index_of(q + 1));
+  return frame;
+}
+
+// How much of each of the q + 1 points of a span is in each Bézier point of degree q + 1 of it.
+std::vector<std::vector<DoubleDouble>> raised_shares(const HomogeneousCurve& frame, int span,
+                                                     const BezierPiece& piece) {
+  const int q = frame.degree;
+  HomogeneousCurve local = frame.points_between(span - q, span);
+  std::vector<std::vector<DoubleDouble>> shares(index_of(q + 2));
+  std::vector<HomogeneousPoint> raised;
+  for (std::size_t j = 0; j < index_of(q + 1); j += kChannels) {  // unit points, 5 at a time
+    for (std::size_t k = 0; k < local.points.size(); ++k) {
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        channel(local.points[k], c) = k == j + c ? 1.0 : 0.0;
+      }
+    }
+    raised.assign(index_of(q + 1), HomogeneousPoint());
+    bezier_points(local, q, piece.left, piece.right, raised);
+    raise_degree(raised);
+    for (std::size_t i = 0; i < raised.size(); ++i) {
+      for (std::size_t c = 0; c < kChannels && j + c < index_of(q + 1); ++c) {
+        shares[i].push_back(channel(raised[i], c));
+      }
+    }
+  }
+  return shares;
+}
+
+// Symmetric and positive definite; entries left of a row's first are 0 and stay it (LDL^T).
+class Envelope {
+ public:
+  // Each unknown meets those up to `reach` away, around the end too if `cyclic`.
+  Envelope(std::size_t size, std::size_t reach, bool cyclic) : right_(size) {
+    for (std::size_t i = 0; i < size; ++i) {
+      const bool wraps = cyclic && i + reach >= size;
+      first_.push_back(wraps || i < reach ? 0 : i - reach);
+      rows_.emplace_back(i - first_.back() + 1);
+    }
+    for (auto& channels : right_) channels.fill(0.0);
+  }
+  void add(std::size_t i, std::size_t j, DoubleDouble x) {
+    if (j <= i) entry(i, j) += x;
+  }
+  void add_right(std::size_t i, std::size_t c, DoubleDouble x) { right_[i][c] += x; }
+
+  // The solution, or nothing if a pivot is not positive.
+  std::vector<std::array<DoubleDouble, kChannels>> solve() {
+    const std::size_t size = rows_.size();
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t j = first_[i]; j < i; ++j) {  // L D of the row, then L
+        DoubleDouble sum = entry(i, j);
+        for (std::size_t k = std::max(first_[i], first_[j]); k < j; ++k) {
+          sum = sum - entry(i, k) * entry(j, k);
+        }
+        entry(i, j) = sum;
+      }
+      for (std::size_t j = first_[i]; j < i; ++j) {
+        const DoubleDouble scaled = entry(i, j) / entry(j, j);
+        entry(i, i) = entry(i, i) - scaled * entry(i, j);
+        entry(i, j) = scaled;
+        for (std::size_t c = 0; c < kChannels; ++c) {
+          right_[i][c] = right_[i][c] - scaled * right_[j][c];
+        }
+      }
+      if (!(entry(i, i).hi > 0)) return {};
+    }
+    for (std::size_t i = size; i-- > 0;) {
+      for (std::size_t c = 0; c < kChannels; ++c) right_[i][c] = right_[i][c] / entry(i, i);
+    }
+    for (std::size_t i = size; i-- > 0;) {
+      for (std::size_t j = first_[i]; j < i; ++j) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+          right_[j][c] = right_[j][c] - entry(i, j) * right_[i][c];
+        }
+      }
+    }
+    return right_;
+  }
+
+ private:
+  DoubleDouble& entry(std::size_t i, std::size_t j) { return rows_[i][j - first_[i]]; }
+
+  std::vector<std::size_t> first_;
+  std::vector<std::vector<DoubleDouble>> rows_;
+  std::vector<std::array<DoubleDouble, kChannels>> right_;
+};
+
+// Points that are not sought: ends of the curve and both sides of jumps.
+std::vector<const HomogeneousPoint*> fixed_points(const HomogeneousCurve& frame,
+                                                  const std::vector<BezierPiece>& pieces) {
+  std::vector<const HomogeneousPoint*> fixed(frame.points.size(), nullptr);
+  if (frame.domain.periodic) return fixed;
+  const auto is_end = [&frame](Knot knot) { return frame.multiplicity(knot) > frame.degree; };
+  for (const BezierPiece& piece : pieces) {
+    const int span = frame.span_at(piece.left, Side::right);
+    if (is_end(piece.left)) fixed[index_of(span - frame.degree)] = &piece.points.front();
+    if (is_end(piece.right)) fixed[index_of(span)] = &piece.points.back();
+  }
+  return fixed;
+}
+
+// False if there is no solution with positive weights.
+bool solve_points(HomogeneousCurve& frame, const std::vector<BezierPiece>& pieces) {
+  const bool periodic = frame.domain.periodic;
+  const std::size_t q = index_of(frame.degree);
+  const std::size_t count = frame.points.size() - (periodic ? q : 0);
+  const std::vector<const HomogeneousPoint*> fixed = fixed_points(frame, pieces);
+  Envelope equations(count, q, periodic);
+  for (const BezierPiece& piece : pieces) {
+    const int span = frame.span_at(piece.left, Side::right);
+    const std::size_t start = index_of(span) - q;
+    const auto shares = raised_shares(frame, span, piece);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      HomogeneousPoint rest = piece.points[i];
+      const DoubleDouble scale = DoubleDouble(1.0) / (rest.w * rest.w);
+      for (std::size_t j = 0; j <= q; ++j) {
+        if (fixed[start + j] == nullptr) continue;
+        HomogeneousPoint known = *fixed[start + j];
+        for (std::size_t c = 0; c < kChannels; ++c) {
+          channel(rest, c) = channel(rest, c) - shares[i][j] * channel(known, c);
+        }
+      }
+      for (std::size_t j = 0; j <= q; ++j) {
+        if (fixed[start + j] != nullptr) continue;
+        const std::size_t row = (start + j) % count;
+        const DoubleDouble scaled = shares[i][j] * scale;
+        for (std::size_t k = 0; k <= q; ++k) {
+          if (fixed[start + k] == nullptr) {
+            equations.add(row, (start + k) % count, scaled * shares[i][k]);
+          }
+        }
+        for (std::size_t c = 0; c < kChannels; ++c) {
+          equations.add_right(row, c, scaled * channel(rest, c));
+        }
+      }
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (fixed[i] == nullptr) continue;
+    HomogeneousPoint known = *fixed[i];
+    equations.add(i, i, 1.0);
+    for (std::size_t c = 0; c < kChannels; ++c) equations.add_right(i, c, channel(known, c));
+  }
+  const auto solution = equations.solve();
+  if (solution.empty()) return false;
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      channel(frame.points[i], c) = solution[i % count][c];
+    }
+    if (!(frame.points[i].w.hi > 0)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<ReducedCurve> reduce_degree(const NurbsCurve& curve, double tolerance) {
+  const std::string what = "curve '" + curve.name() + "': ";
+  if (curve.degree() == 1) {
+    return fail(ErrorCode::degree_out_of_range, what + "degree 0 is outside 1..15");
+  }
+  if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
+    return fail(ErrorCode::value_out_of_range,
+                what + "a tolerance of " + number_text(tolerance) + " is not a number from 0 up");
+  }
+  const auto missed = [&](const std::string& error) {
+    return fail(ErrorCode::error_bound_missed,
+                what + "at degree " + std::to_string(curve.degree() - 1) + " " + error +
+                    ", the tolerance is " + number_text(tolerance));
+  };
+  HomogeneousCurve before(curve);
+  if (!curve.is_periodic()) before = before.clamped_part(curve.u_min(), curve.u_max());
+  const std::vector<BezierPiece> pieces = bezier_pieces(before);
+  HomogeneousCurve after = reduced_frame(before);
+  if (!solve_points(after, pieces)) return missed("a weight would not be positive");
+  CurveSpec spec;
+  spec.name = curve.name();
+  spec.degree = after.degree;
+  spec.dim = after.dim;
+  spec.periodic = curve.is_periodic();
+  spec.jumps.assign(curve.jumps().begin(), curve.jumps().end());
+  after.write_to(spec);
+  auto result = NurbsCurve::create(std::move(spec));
+  if (!result) return missed("there is no curve (" + result.error().message + ")");
+  const HomogeneousCurve rounded(*result);
+  double error = 0;
+  for (const BezierPiece& piece : pieces) {
+    constexpr double kNoLimit = 1e300;
+    const BezierPiece part = piece_between(rounded, piece.left, piece.right);
+    error = std::max(error, distance_bound(piece, part, curve.dim(), kNoLimit));
+  }
+  if (!(error <= tolerance)) return missed("it is up to " + number_text(error) + " away");
+  return ReducedCurve{std::move(*result), 1, error};
+}
+
+}  // namespace knotwave::curves

@@ -9,6 +9,10 @@
 namespace knotwave::bank_input {
 namespace {
 
+std::string warning_text(const std::string& file, const std::string& what) {
+  return file + ": warning: " + what;
+}
+
 Error placed(Error error, const engine::PatchSpec& patch, const std::string& path) {
   const engine::Place place = patch.place_of(path);
   error.source = patch.source_name;
@@ -53,7 +57,7 @@ Result<std::vector<engine::WaveCycles>> read_waves(const engine::BankSpec& spec,
       auto cycles = io::read_cycles(file, frame);
       if (!cycles) return bad_cycles(patch, oscillator.name, cycles.error());
       for (const auto& warning : cycles->warnings) {
-        warnings.push_back(file + ": warning: " + warning);
+        warnings.push_back(warning_text(file, warning));
       }
       waves.push_back({file, cycles->frame, cycles->rows, std::move(cycles->samples)});
     }

@@ -76,11 +76,11 @@ Result<EnvelopeProgram> EnvelopeProgram::create(const curves::NurbsCurve& curve,
         "an envelope lasts more than 0 and less than 1e9 seconds, not " + text(spec.seconds));
   }
   if (curve.degree() > curves::kMaxPieceDegree) {
-    return fail(ErrorCode::unsupported,
-                "an envelope's curve may have degree 1 to " +
-                    std::to_string(curves::kMaxPieceDegree) + ": '" + curve.name() + "' has " +
-                    std::to_string(curve.degree()) +
-                    "; draw it with a lower degree and more points");
+    return fail(ErrorCode::unsupported, "an envelope's curve may have degree 1 to " +
+                                            std::to_string(curves::kMaxPieceDegree) + ": '" +
+                                            curve.name() + "' has " +
+                                            std::to_string(curve.degree()) +
+                                            "; draw it with a lower degree and more points");
   }
   auto program = curves::compile_function(curve, spec.compile);
   if (!program) return program.error();

@@ -5,6 +5,7 @@
 #include "knotwave/engine/channel_state.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace knotwave::engine {
 namespace {
@@ -124,7 +125,8 @@ void ChannelState::select_parameter(int controller, int value) KNOTWAVE_RT {
 }
 
 int ChannelState::bend_range_cents(double own_bend_range) const KNOTWAVE_RT {
-  return bend_range_cents_ >= 0 ? bend_range_cents_ : static_cast<int>(own_bend_range * 100 + 0.5);
+  return bend_range_cents_ >= 0 ? bend_range_cents_
+                                : static_cast<int>(std::floor(own_bend_range * 100 + 0.5));
 }
 
 ChannelState::Effect ChannelState::data_entry(bool coarse, int value,

@@ -175,13 +175,18 @@ TEST(Extremes, APatchAsksForThousandDecibelsInVain) {
 }
 
 TEST(Extremes, ADepthBeyondItsTargetsRangeIsToldWhereItIsWritten) {
+  const auto read = [](const Target& target, double depth) {
+    std::string text(kPlain);
+    text += "[filter]\n[lfos.w]\ncurve = 'sine'\n[[maps]]\nfrom = 'mod'\nto = '";
+    text += target.word;
+    text += "'\ndepth = ";
+    text += std::to_string(static_cast<int>(depth));
+    return parse_patch(text, "p.toml");
+  };
   for (const Target& target : {Target{"amp", 240}, Target{"filter.cutoff", 240},
                                Target{"lfo.w.rate", 20}, Target{"gain", 1000}}) {
-    const std::string number = std::to_string(static_cast<int>(target.most) + 1);
-    const std::string text = std::string(kPlain) + "[filter]\n[lfos.w]\ncurve = 'sine'\n" +
-                             "[[maps]]\nfrom = 'mod'\nto = '" + target.word + "'\n";
-    EXPECT_TRUE(parse_patch(text + "depth = " + std::to_string(int(target.most)), "p.toml"));
-    const auto patch = parse_patch(text + "depth = " + number, "p.toml");
+    EXPECT_TRUE(read(target, target.most));
+    const auto patch = read(target, target.most + 1);
     ASSERT_FALSE(patch) << target.word;
     EXPECT_EQ(patch.error().code, ErrorCode::value_out_of_range);
     EXPECT_THAT(patch.error().to_string(), testing::StartsWith("p.toml:22:9: error: map 1: "));

@@ -37,7 +37,7 @@ inline io::Song small_song() {
   for (int i = 0; i < 4; ++i) {
     const auto key = static_cast<std::uint8_t>(60 + 3 * i);
     const auto channel = static_cast<std::uint8_t>(i == 3 ? 4 : i % 2);
-    const auto tick = static_cast<std::uint64_t>(240 * i);
+    const auto tick = 240 * static_cast<std::uint64_t>(i);
     const auto on = static_cast<std::uint8_t>(0x90 | channel);
     song.events.push_back({tick + 1, 0, {on, key, 90}, 0, 0});
     song.events.push_back({tick + 200, 0, {on, key, 0}, 0, 0});

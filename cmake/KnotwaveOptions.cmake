@@ -29,7 +29,8 @@ target_compile_options(knotwave_flags INTERFACE
   # A configuration written with designated initialisers names what differs from the defaults.
   -Wno-missing-field-initializers
   # gcc 12 sees overflows in std::vector and std::string that are not there (GCC bugs 105562, 107852).
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-array-bounds -Wno-restrict -Wno-stringop-overread>
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-array-bounds -Wno-restrict -Wno-stringop-overread
+    $<$<BOOL:${KNOTWAVE_SANITIZE}>:-Wno-maybe-uninitialized>>
   # The same bits from gcc and clang, at any -O level: see docs/architecture.md, Determinism.
   -ffp-contract=off -fno-fast-math
   # These two change no value: without them gcc turns neither a select nor a sqrt into vector code.

@@ -122,9 +122,9 @@ Result<NurbsCurve> join(const NurbsCurve& first, const NurbsCurve& second, doubl
                 names_of(first, second) + "a periodic curve has no ends; sub_curve() cuts it open");
   }
   const int degree = std::max(first.degree(), second.degree());
-  const auto left = raised(first, degree, false);
+  auto left = raised(first, degree, false);
   if (!left) return left;
-  const auto right = raised(second, degree, false);
+  auto right = raised(second, degree, false);
   if (!right) return right;
   CurveChain chain(degree, first.dim());
   chain.append(CurvePart(*left), 0);

@@ -176,6 +176,7 @@ std::optional<CurvePart> composed(const Outer& outer, std::size_t index, const I
   CurvePart part;
   for (int c = 0; c <= dim; ++c) {
     std::vector<Polynomial> work;
+    work.reserve(points.size());
     for (const HomogeneousPoint& point : points) {
       work.push_back({c < dim ? point.x[index_of(c)] : point.w});
     }

@@ -26,13 +26,9 @@ DoubleDouble& channel(HomogeneousPoint& point, std::size_t c) {
   return c < point.x.size() ? point.x[c] : point.w;
 }
 
-// The lower degree's curve with its knots and no points yet: knots one time less, simple ones kept.
-HomogeneousCurve reduced_frame(const HomogeneousCurve& curve) {
-  HomogeneousCurve frame;
-  const int p = curve.degree, q = p - 1;
-  frame.degree = q;
-  frame.dim = curve.dim;
-  frame.domain = curve.domain;
+// The knots from the start of the domain to before its end, each one time less, simple ones kept.
+std::vector<Knot> reduced_knots(const HomogeneousCurve& curve) {
+  const int p = curve.degree;
   const auto end = curve.knots.end() - p - 1;  // of the domain
   std::vector<Knot> inner;                     // from the start of the domain on
   for (auto run =
@@ -42,11 +38,22 @@ HomogeneousCurve reduced_frame(const HomogeneousCurve& curve) {
     inner.insert(inner.end(), index_of(std::max(1, static_cast<int>(next - run) - 1)), *run);
     run = next;
   }
+  return inner;
+}
+
+// The lower degree's curve with its knots and no points yet.
+HomogeneousCurve reduced_frame(const HomogeneousCurve& curve, const std::vector<Knot>& inner) {
+  HomogeneousCurve frame;
+  const int p = curve.degree, q = p - 1;
+  frame.degree = q;
+  frame.dim = curve.dim;
+  frame.domain = curve.domain;
   if (!curve.domain.periodic) {
     frame.knots = inner;  // the clamped start has p of its p + 1
-    frame.knots.insert(frame.knots.end(), index_of(p), *end);
+    frame.knots.insert(frame.knots.end(), index_of(p), curve.knots[curve.points.size()]);
   } else {
     std::vector<double> written;
+    written.reserve(inner.size() + 1);
     for (const Knot& knot : inner) written.push_back(knot.at);
     written.push_back(curve.domain.high);
     const auto all = expanded_knots(written, q, static_cast<int>(inner.size()), true);
@@ -140,10 +147,11 @@ class Envelope {
   std::vector<std::array<DoubleDouble, kChannels>> right_;
 };
 
+using FixedPoints = std::vector<const HomogeneousPoint*>;  // null where a point is sought
+
 // Points that are not sought: ends of the curve and both sides of jumps.
-std::vector<const HomogeneousPoint*> fixed_points(const HomogeneousCurve& frame,
-                                                  const std::vector<BezierPiece>& pieces) {
-  std::vector<const HomogeneousPoint*> fixed(frame.points.size(), nullptr);
+FixedPoints fixed_points(const HomogeneousCurve& frame, const std::vector<BezierPiece>& pieces) {
+  FixedPoints fixed(frame.points.size(), nullptr);
   if (frame.domain.periodic) return fixed;
   const auto is_end = [&frame](Knot knot) { return frame.multiplicity(knot) > frame.degree; };
   for (const BezierPiece& piece : pieces) {
@@ -154,41 +162,46 @@ std::vector<const HomogeneousPoint*> fixed_points(const HomogeneousCurve& frame,
   return fixed;
 }
 
+// The p + 1 equations of one piece, squared.
+void add_equations(Envelope& equations, const BezierPiece& piece,
+                   const std::vector<std::vector<DoubleDouble>>& shares, const FixedPoints& fixed,
+                   std::size_t start, std::size_t count) {
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    HomogeneousPoint rest = piece.points[i];
+    const DoubleDouble scale = DoubleDouble(1.0) / (rest.w * rest.w);
+    for (std::size_t j = 0; j < shares[i].size(); ++j) {
+      if (fixed[start + j] == nullptr) continue;
+      HomogeneousPoint known = *fixed[start + j];
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        channel(rest, c) = channel(rest, c) - shares[i][j] * channel(known, c);
+      }
+    }
+    for (std::size_t j = 0; j < shares[i].size(); ++j) {
+      if (fixed[start + j] != nullptr) continue;
+      const std::size_t row = (start + j) % count;
+      const DoubleDouble scaled = shares[i][j] * scale;
+      for (std::size_t k = 0; k < shares[i].size(); ++k) {
+        if (fixed[start + k] != nullptr) continue;
+        equations.add(row, (start + k) % count, scaled * shares[i][k]);
+      }
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        equations.add_right(row, c, scaled * channel(rest, c));
+      }
+    }
+  }
+}
+
 // False if there is no solution with positive weights.
 bool solve_points(HomogeneousCurve& frame, const std::vector<BezierPiece>& pieces) {
   const bool periodic = frame.domain.periodic;
   const std::size_t q = index_of(frame.degree);
   const std::size_t count = frame.points.size() - (periodic ? q : 0);
-  const std::vector<const HomogeneousPoint*> fixed = fixed_points(frame, pieces);
+  const FixedPoints fixed = fixed_points(frame, pieces);
   Envelope equations(count, q, periodic);
   for (const BezierPiece& piece : pieces) {
     const int span = frame.span_at(piece.left, Side::right);
-    const std::size_t start = index_of(span) - q;
-    const auto shares = raised_shares(frame, span, piece);
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      HomogeneousPoint rest = piece.points[i];
-      const DoubleDouble scale = DoubleDouble(1.0) / (rest.w * rest.w);
-      for (std::size_t j = 0; j <= q; ++j) {
-        if (fixed[start + j] == nullptr) continue;
-        HomogeneousPoint known = *fixed[start + j];
-        for (std::size_t c = 0; c < kChannels; ++c) {
-          channel(rest, c) = channel(rest, c) - shares[i][j] * channel(known, c);
-        }
-      }
-      for (std::size_t j = 0; j <= q; ++j) {
-        if (fixed[start + j] != nullptr) continue;
-        const std::size_t row = (start + j) % count;
-        const DoubleDouble scaled = shares[i][j] * scale;
-        for (std::size_t k = 0; k <= q; ++k) {
-          if (fixed[start + k] == nullptr) {
-            equations.add(row, (start + k) % count, scaled * shares[i][k]);
-          }
-        }
-        for (std::size_t c = 0; c < kChannels; ++c) {
-          equations.add_right(row, c, scaled * channel(rest, c));
-        }
-      }
-    }
+    add_equations(equations, piece, raised_shares(frame, span, piece), fixed, index_of(span) - q,
+                  count);
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (fixed[i] == nullptr) continue;
@@ -226,7 +239,12 @@ Result<ReducedCurve> reduce_degree(const NurbsCurve& curve, double tolerance) {
   HomogeneousCurve before(curve);
   if (!curve.is_periodic()) before = before.clamped_part(curve.u_min(), curve.u_max());
   const std::vector<BezierPiece> pieces = bezier_pieces(before);
-  HomogeneousCurve after = reduced_frame(before);
+  const std::vector<Knot> inner = reduced_knots(before);
+  if (curve.is_periodic() && static_cast<int>(inner.size()) < curve.degree()) {
+    return missed("a period would have " + std::to_string(inner.size()) + " points and needs " +
+                  std::to_string(curve.degree()));
+  }
+  HomogeneousCurve after = reduced_frame(before, inner);
   if (!solve_points(after, pieces)) return missed("a weight would not be positive");
   CurveSpec spec;
   spec.name = curve.name();

@@ -68,6 +68,68 @@ DoubleDouble& channel(HomogeneousPoint& point, std::size_t c) {
 }
 constexpr std::size_t kChannels = kMaxDim + 1;
 
+// The points and knots a removal is about: those from p + t before the run's last knot on, which
+// may reach into the next period.
+struct Window {
+  int first = 0;
+  int unknowns = 0;                      ///< points 1 .. unknowns of the p + 1 that are to be
+  std::vector<HomogeneousPoint> points;  ///< [p+t+1] as they are
+  std::vector<Knot> knots;               ///< [2p+2] once the knots are gone
+};
+
+Window window_of(const HomogeneousCurve& curve, KnotRun run, int times) {
+  const int p = curve.degree, r = run.last;
+  const int count = static_cast<int>(curve.points.size()) - (curve.domain.periodic ? p : 0);
+  Window window;
+  window.first = r - p - times;
+  window.unknowns = p - run.times + times - 1;
+  for (int i = window.first; i <= r; ++i) {
+    const bool beyond = i >= static_cast<int>(curve.points.size());
+    window.points.push_back(curve.points[index_of(beyond ? i - count : i)]);
+  }
+  for (int i = window.first; i <= r + p + 1; ++i) {
+    if (i > r - times && i <= r) continue;
+    const bool beyond = i >= static_cast<int>(curve.knots.size());
+    window.knots.push_back(curve.knots[index_of(beyond ? i - count : i)]);
+    if (beyond) ++window.knots.back().period;
+  }
+  return window;
+}
+
+// The unknown points of the window, each channel a row. The first point that is to be is the first
+// there is, and those after the unknown ones are the last there are.
+std::vector<Row> solve(const Window& window, const KnotDomain& domain, Knot u, int times) {
+  const std::vector<Row> rows = insertion(domain, window.knots, u, times);
+  const std::size_t unknowns = index_of(window.unknowns), equations = unknowns + index_of(times);
+  std::vector<Row> columns(unknowns + kChannels, Row(equations));
+  for (std::size_t i = 0; i < equations; ++i) {
+    const Row& row = rows[i + 1];
+    HomogeneousPoint rest = window.points[i + 1];
+    const DoubleDouble scale = DoubleDouble(1.0) / DoubleDouble(rest.w.hi);
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      if (j >= 1 && j <= unknowns) {
+        columns[j - 1][i] = row[j] * scale;
+        continue;
+      }
+      HomogeneousPoint known = window.points[j == 0 ? 0 : j + index_of(times)];
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        channel(rest, c) = channel(rest, c) - row[j] * channel(known, c);
+      }
+    }
+    for (std::size_t c = 0; c < kChannels; ++c) columns[unknowns + c][i] = channel(rest, c) * scale;
+  }
+  return solve_least_squares(std::move(columns), unknowns);
+}
+
+// A jump with one knot less: both its ends become their mean.
+void join_jump(HomogeneousCurve& curve, KnotRun run) {
+  const int right = run.last - curve.degree;
+  HomogeneousPoint& left = curve.points[index_of(right - 1)];
+  left = blend(left, curve.points[index_of(right)], 1.0, 1.0);
+  curve.points.erase(curve.points.begin() + right);
+  curve.knots.erase(curve.knots.begin() + run.last);
+}
+
 }  // namespace
 
 KnotRun run_of(const HomogeneousCurve& curve, double u) {
@@ -87,62 +149,26 @@ KnotRun run_of(const HomogeneousCurve& curve, double u) {
 }
 
 bool remove_knots_of(HomogeneousCurve& curve, KnotRun run, int times) {
-  const int p = curve.degree, r = run.last, s = run.times, t = times;
-  const bool periodic = curve.domain.periodic;
-  const int count = static_cast<int>(curve.points.size()) - (periodic ? p : 0);
-  if (count - t < p + 1) return false;
-  std::vector<HomogeneousPoint>& points = curve.points;
-  if (s > p && t == 1) {  // a jump: both its ends become their mean
-    HomogeneousPoint& left = points[index_of(r - s)];
-    left = blend(left, points[index_of(r - p)], 1.0, 1.0);
-    points.erase(points.begin() + (r - p));
-    curve.knots.erase(curve.knots.begin() + r);
+  const int p = curve.degree;
+  const int count = static_cast<int>(curve.points.size()) - (curve.domain.periodic ? p : 0);
+  if (count - times < p + 1) return false;
+  if (run.times > p && times == 1) {
+    join_jump(curve, run);
     return true;
   }
-  // The p + t + 1 points from `first` on come from p + 1: the first of these and the last s - t + 1
-  // are points of the curve already, the others are sought.
-  const int first = r - p - t;
-  const auto unknowns = index_of(p - s + t - 1), equations = unknowns + index_of(t);
-  const auto point = [&](std::size_t i) {  // the window may reach into the next period
-    return points[i < points.size() ? i : i - index_of(count)];
-  };
-  std::vector<Knot> knots;
-  for (int i = first; i <= r + p + 1; ++i) {
-    const bool beyond = i >= static_cast<int>(curve.knots.size());
-    knots.push_back(curve.knots[index_of(beyond ? i - count : i)]);
-    if (beyond) ++knots.back().period;
+  const Window window = window_of(curve, run, times);
+  const Knot u = curve.knots[index_of(run.last)];
+  const std::vector<Row> solved = solve(window, curve.domain, u, times);
+  for (int j = 0; j < window.unknowns; ++j) {
+    HomogeneousPoint& point = curve.points[index_of(window.first + 1 + j)];
+    for (std::size_t c = 0; c < kChannels; ++c) channel(point, c) = solved[c][index_of(j)];
+    if (!(point.w.hi > 0)) return false;
   }
-  const Knot u = curve.knots[index_of(r)];
-  knots.erase(knots.begin() + (r - t + 1 - first), knots.begin() + (r + 1 - first));
-  const std::vector<Row> rows = insertion(curve.domain, knots, u, t);
-  std::vector<Row> columns(unknowns + kChannels, Row(equations));
-  for (std::size_t i = 0; i < equations; ++i) {
-    const Row& row = rows[i + 1];
-    HomogeneousPoint rest = point(index_of(first + 1) + i);
-    const DoubleDouble scale = DoubleDouble(1.0) / DoubleDouble(rest.w.hi);
-    for (std::size_t j = 0; j < row.size(); ++j) {
-      if (j >= 1 && j <= unknowns) {
-        columns[j - 1][i] = row[j] * scale;
-        continue;
-      }
-      HomogeneousPoint known = point(index_of(first) + j + (j == 0 ? 0 : index_of(t)));
-      for (std::size_t c = 0; c < kChannels; ++c) {
-        channel(rest, c) = channel(rest, c) - row[j] * channel(known, c);
-      }
-    }
-    for (std::size_t c = 0; c < kChannels; ++c) columns[unknowns + c][i] = channel(rest, c) * scale;
-  }
-  const std::vector<Row> solved = solve_least_squares(std::move(columns), unknowns);
-  for (std::size_t j = 0; j < unknowns; ++j) {
-    for (std::size_t c = 0; c < kChannels; ++c) {
-      channel(points[index_of(first + 1) + j], c) = solved[c][j];
-    }
-    if (!(points[index_of(first + 1) + j].w.hi > 0)) return false;
-  }
-  const auto stale = points.begin() + first + 1 + static_cast<long>(unknowns);
-  points.erase(stale, stale + t);
-  curve.knots.erase(curve.knots.begin() + r - t + 1, curve.knots.begin() + r + 1);
-  if (periodic) curve.repeat_period(std::min(first + 1, p));
+  const auto stale = curve.points.begin() + window.first + 1 + window.unknowns;
+  curve.points.erase(stale, stale + times);
+  const auto gone = curve.knots.begin() + run.last + 1;
+  curve.knots.erase(gone - times, gone);
+  if (curve.domain.periodic) curve.repeat_period(std::min(window.first + 1, p));
   return true;
 }
 

@@ -65,6 +65,9 @@ class Reduction {
   Result<ReducedCurve> finish(const NurbsCurve& before) const;
 
  private:
+  // False if a point would pass the limits.
+  bool round_points(Step& step, KnotRun run) const;
+
   HomogeneousCurve now_, rounded_;
   std::vector<BezierPiece> pieces_;  // of the curve as given
   std::vector<double> errors_;       // a bound for each
@@ -78,25 +81,15 @@ bool overlap(const BezierPiece& piece, Knot from, Knot to) {
 std::optional<Reduction::Step> Reduction::step(double u, int times, double tolerance) const {
   const KnotRun run = run_of(now_, u);
   if (run.spare < times) return std::nullopt;
+  Step step{now_, {}, {}, 0, times};
+  if (!remove_knots_of(step.exact, run, times)) return std::nullopt;
+  if (!round_points(step, run)) return std::nullopt;
   // Points first + 1 .. last - 1 change (a jump's two ends are first + 1 and last - 1), and nothing
   // outside of the knots that carry them.
   const int p = now_.degree, first = run.last - p - times, last = run.last - run.times + times;
+  const int end = std::max(last, run.last - p + 1) + p, knots = static_cast<int>(now_.knots.size());
   const Knot from = now_.knots[index_of(std::min(first + 1, run.last - p - 1))];
-  const Knot to = now_.knots[index_of(
-      std::min(std::max(last, run.last - p + 1) + p, static_cast<int>(now_.knots.size()) - 1))];
-  Step step{now_, {}, {}, 0, times};
-  if (!remove_knots_of(step.exact, run, times)) return std::nullopt;
-  step.rounded = step.exact;
-  for (int i = 0; i < static_cast<int>(step.exact.points.size()); ++i) {
-    HomogeneousPoint& point = step.rounded.points[index_of(i)];
-    const bool kept = !now_.domain.periodic && (i < run.last - p - times || i > run.last - times);
-    if (kept) {
-      point = rounded_.points[index_of(i <= first ? i : i + times)];
-      continue;
-    }
-    if (!within_limits(point, now_.dim)) return std::nullopt;
-    point = rounded(point, now_.dim);
-  }
+  const Knot to = now_.knots[index_of(std::min(end, knots - 1))];
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     bool touched = overlap(pieces_[i], from, to);
     for (const int period : {-1, 1}) {
@@ -112,6 +105,22 @@ std::optional<Reduction::Step> Reduction::step(double u, int times, double toler
     step.error = std::max(step.error, error);
   }
   return step;
+}
+
+bool Reduction::round_points(Step& step, KnotRun run) const {
+  step.rounded = step.exact;
+  const int first = run.last - now_.degree - step.times;
+  for (int i = 0; i < static_cast<int>(step.exact.points.size()); ++i) {
+    HomogeneousPoint& point = step.rounded.points[index_of(i)];
+    const bool kept = !now_.domain.periodic && (i < first || i > run.last - step.times);
+    if (kept) {
+      point = rounded_.points[index_of(i <= first ? i : i + step.times)];
+      continue;
+    }
+    if (!within_limits(point, now_.dim)) return false;
+    point = rounded(point, now_.dim);
+  }
+  return true;
 }
 
 Result<ReducedCurve> Reduction::finish(const NurbsCurve& before) const {

@@ -61,10 +61,11 @@ Result<NurbsCurve> reverse(const NurbsCurve& curve) {
     return (DoubleDouble::sum(low, high) - DoubleDouble(k)).hi;
   });
   // The last point first. A periodic curve repeats its first p points at the end of points().
-  const int n = curve.point_count(), dim = curve.dim();
-  for (int i = 0; i < static_cast<int>(spec.points.size()) / dim; ++i) {
-    std::copy_n(curve.points().begin() + (n - 1 - i) * dim, dim, spec.points.begin() + i * dim);
-    if (!spec.weights.empty()) spec.weights[index_of(i)] = curve.weights()[index_of(n - 1 - i)];
+  const auto dim = index_of(curve.dim()), last = index_of(curve.point_count() - 1);
+  for (std::size_t i = 0; i < spec.points.size() / dim; ++i) {
+    const auto from = curve.points().subspan((last - i) * dim, dim);
+    std::copy(from.begin(), from.end(), spec.points.begin() + static_cast<long>(i * dim));
+    if (!spec.weights.empty()) spec.weights[i] = curve.weights()[last - i];
   }
   return moved(std::move(spec));
 }

@@ -13,13 +13,13 @@ using base::number_text;
 
 Result<void> fit_weights(const std::string& what, std::vector<double>& weights) {
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    const std::string name = "weight " + std::to_string(i) + " (" + number_text(weights[i]) + ")";
-    if (!std::isfinite(weights[i])) {
-      return fail(ErrorCode::not_finite, what + ": " + name + " is not finite");
+    if (std::isfinite(weights[i]) && weights[i] > 0) continue;
+    std::string message = what + ": weight ";
+    message += std::to_string(i) + " (" + number_text(weights[i]) + ")";
+    if (std::isfinite(weights[i])) {
+      return fail(ErrorCode::weight_not_positive, message + " must be above 0");
     }
-    if (weights[i] <= 0) {
-      return fail(ErrorCode::weight_not_positive, what + ": " + name + " must be above 0");
-    }
+    return fail(ErrorCode::not_finite, message + " is not finite");
   }
   const auto [low, high] = std::minmax_element(weights.begin(), weights.end());
   const double least = *low, most = *high;

@@ -419,6 +419,16 @@ TEST(ReduceDegree, KeepsJumpsAndCorners) {
   EXPECT_THAT(less->curve.points(), ElementsAre(0, testing::DoubleEq(0.7), 3, 0, 2));
 }
 
+TEST(ReduceDegree, APeriodNeedsEnoughKnotsOfTheLowerDegree) {
+  CurveSpec spec = spec_of(6, {0, 1, 2, 3, 2, 1, 0}, {0, 0, 1, 1, 2, 2, 2, 3});
+  spec.periodic = true;
+  const auto error = reduce_degree(made(spec), 10);
+  ASSERT_FALSE(error);
+  EXPECT_EQ(error.error().message,
+            "curve 'example': at degree 5 a period would have 4 points and needs 6, the tolerance "
+            "is 10");
+}
+
 TEST(ReduceDegree, ReportsTheErrorItWouldMake) {
   const auto error = reduce_degree(made(spec_of(2, {0, 1, 0})), 0.25);
   ASSERT_FALSE(error);

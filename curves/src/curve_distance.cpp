@@ -92,7 +92,7 @@ void raise_degree(std::vector<HomogeneousPoint>& points) {
 }
 
 double distance_bound(const BezierPiece& a, const BezierPiece& b, int dim, double limit) {
-  constexpr int kMostHalvings = 6;
+  constexpr int kMostHalvings = 10;
   std::vector<Pair> open{{a.points, b.points, 0}};
   while (open.front().b.size() < open.front().a.size()) raise_degree(open.front().b);
   double found = 0, bound = 0;

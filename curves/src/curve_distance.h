@@ -25,7 +25,7 @@ void raise_degree(std::vector<HomogeneousPoint>& points);
 /// lower degree. With numerators A, B and weights v, w of the two in Bernstein form and any o,
 ///   a - b = (sum B_j [(A_j - o v_j) - (B_j - o w_j) - (v_j - w_j) (b(u) - o)]) / sum B_j v_j,
 /// so the largest bracket over v_j bounds it; b(u) - o is bounded by b's own hull. The piece is
-/// halved until that is within 1/16 of what is found at ends of parts, at most 6 times. Infinity
+/// halved until that is within 1/16 of what is found at ends of parts, at most 10 times. Infinity
 /// as soon as the distance is known to pass `limit`. Right to 2^-90 max|P|.
 double distance_bound(const BezierPiece& a, const BezierPiece& b, int dim, double limit);
 

@@ -44,7 +44,8 @@ Result<BezierSegment> from_power_basis(const PowerSegment& piece);
 /// The polar form of one span: f(a_1, ..., a_p), symmetric, affine in each argument, and
 /// f(u, ..., u) = C(u) (of the span's polynomial, also outside the span). [any] Homogeneous: out
 /// [dim+1] is (w x, ..., w). `span` as from find_span(); arguments [degree]. The p knots after knot
-/// i give control point i of the span. O(p^2) in double-double, no allocation.
+/// i give control point i of the span. Arguments beyond the span extrapolate, there right to 2^-70
+/// of the largest weighted point. O(p^2) in double-double, no allocation.
 void blossom(const NurbsCurve& curve, int span, std::span<const double> arguments,
              std::span<double> out) noexcept;
 

@@ -11,8 +11,8 @@ namespace knotwave::curves {
 /// A smaller curve, how often the edit could be done, and a proved bound: no point of it is farther
 /// than max_error (Euclidean, output units) from the point of the old curve at the same u, limits
 /// from either side at a knot included. The rounding of its points counts; the bound itself is
-/// computed to 2^-90 max|P|. It is at most 1/16 above the error there is, and for wild curves,
-/// where 64 parts of a span don't get as near, still a bound.
+/// computed to 2^-90 max|P|. It is at most a tenth above the error there is where
+/// spans and weights are within a factor of 16; for wilder curves it may be looser, still a bound.
 struct ReducedCurve {
   NurbsCurve curve;
   int removed = 0;       ///< knots, or degrees

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// Data to a curve with few points and a proved bound. Every knot is at a datum's time, so from one
+// datum to the next the curve is one polynomial and the data are one line, and their Bézier points
+// bound what is between them.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "knotwave/base/document.h"
+
+#include "curve_distance.h"
+#include "fitted_curve.h"
+
+namespace knotwave::curves {
+namespace {
+
+using base::number_text;
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+// An upper bound of how far a curve is from a line: its Bézier points' distance from those of the
+// line. What is far below the tolerance needs no better one.
+double polygon_distance(const BezierPiece& curve, const BezierPiece& line) {
+  const std::size_t p = curve.points.size() - 1;
+  double largest = 0;
+  for (std::size_t j = 0; j <= p; ++j) {
+    const HomogeneousPoint on_line =
+        blend(line.points[0], line.points[1], static_cast<double>(j), static_cast<double>(p - j));
+    largest = std::max(largest, std::abs((curve.points[j].x[0] - on_line.x[0]).hi));
+  }
+  return largest;
+}
+
+class DataReduction {
+ public:
+  DataReduction(const Samples& data, double tolerance, int degree)
+      : data_(data), tolerance_(tolerance), bounds_(data.at.size() - 1) {
+    spline_.degree = degree;
+    spline_.knots.assign(index_of(degree + 1), data.at.front());
+    spline_.knots.insert(spline_.knots.end(), index_of(degree + 1), data.at.back());
+    sample_lines();
+  }
+
+  // Knots until the bound holds everywhere.
+  Result<void> add_knots();
+  // Knots that can be spared, taken out.
+  void remove_knots();
+
+  const Spline& spline() const { return spline_; }
+  double bound() const { return *std::max_element(bounds_.begin(), bounds_.end()); }
+
+ private:
+  void sample_lines();
+  bool fit_all();
+  std::vector<double> measure(const Spline& spline, int first, int last) const;
+  bool remove_knot(int knot);
+  void split_failing_spans();
+
+  Samples data_;
+  double tolerance_;
+  std::vector<double> at_, values_;  // the lines, with places between the data
+  Spline spline_;
+  std::vector<double> bounds_;  // one a line
+};
+
+// As many places on each line as it takes to settle a polynomial of the degree there.
+void DataReduction::sample_lines() {
+  const int between = std::max(spline_.degree, 2);
+  for (std::size_t i = 0; i + 1 < data_.at.size(); ++i) {
+    const double t = data_.at[i], step = data_.at[i + 1] - t;
+    const double value = data_.values[i], rise = data_.values[i + 1] - value;
+    at_.push_back(t);
+    values_.push_back(value);
+    for (int k = 1; k <= between; ++k) {
+      const double fraction = static_cast<double>(k) / (between + 1);
+      const double place = t + step * fraction;
+      if (!(place > at_.back() && place < data_.at[i + 1])) continue;
+      at_.push_back(place);
+      values_.push_back(value + rise * fraction);
+    }
+  }
+  at_.push_back(data_.at.back());
+  values_.push_back(data_.values.back());
+}
+
+bool DataReduction::fit_all() {
+  spline_.points.assign(index_of(spline_.count()), 0.0);
+  spline_.points.front() = data_.values.front();
+  spline_.points.back() = data_.values.back();
+  if (!fit_points(spline_, {at_, values_}, 1, spline_.count() - 2)) return false;
+  bounds_ = measure(spline_, 0, spline_.count() - 1);
+  return true;
+}
+
+// Bounds of the lines from knot first + p to knot last + 1: where only points first..last act.
+std::vector<double> DataReduction::measure(const Spline& spline, int first, int last) const {
+  const int p = spline.degree;
+  const double from = spline.knots[index_of(first + p)], to = spline.knots[index_of(last + 1)];
+  HomogeneousCurve part;
+  part.degree = p;
+  part.dim = 1;
+  part.domain = {from, to, false};
+  for (int i = first; i <= last + p + 1; ++i) {
+    part.knots.push_back({0, spline.knots[index_of(i)]});
+  }
+  for (int i = first; i <= last; ++i) {
+    part.points.emplace_back(std::span(&spline.points[index_of(i)], 1), 1.0);
+  }
+  std::vector<double> bounds;
+  auto line = std::lower_bound(data_.at.begin(), data_.at.end(), from) - data_.at.begin();
+  for (; data_.at[static_cast<std::size_t>(line)] < to; ++line) {
+    const auto i = static_cast<std::size_t>(line);
+    const Knot left{0, data_.at[i]}, right{0, data_.at[i + 1]};
+    const BezierPiece curve = piece_between(part, left, right);
+    BezierPiece straight{left, right, {}};
+    for (const std::size_t end : {i, i + 1}) {
+      straight.points.emplace_back(data_.values.subspan(end, 1), 1.0);
+    }
+    const double rough = polygon_distance(curve, straight);
+    const bool near = rough <= tolerance_ / 16;
+    bounds.push_back(near ? rough : distance_bound(curve, straight, 1, kNoLimit));
+  }
+  return bounds;
+}
+
+// Every span with a line out of bounds gets a knot where half of its squared error lies to either
+// side: in the middle of an arc, and beside a corner. A span of one line gets its knots once more.
+void DataReduction::split_failing_spans() {
+  const int p = spline_.degree;
+  std::vector<double> added;
+  const auto multiplicity = [&](double knot) {
+    const auto [low, high] = std::equal_range(spline_.knots.begin(), spline_.knots.end(), knot);
+    return static_cast<int>(high - low + std::count(added.begin(), added.end(), knot));
+  };
+  for (int span = p; span < spline_.count(); ++span) {
+    const double from = spline_.knots[index_of(span)], to = spline_.knots[index_of(span + 1)];
+    if (!(from < to)) continue;
+    const auto first = static_cast<std::size_t>(
+        std::lower_bound(data_.at.begin(), data_.at.end(), from) - data_.at.begin());
+    const auto end = static_cast<std::size_t>(
+        std::lower_bound(data_.at.begin(), data_.at.end(), to) - data_.at.begin());
+    double worst = 0, sum = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      worst = std::max(worst, bounds_[i]);
+      sum += bounds_[i] * bounds_[i];
+    }
+    if (worst <= tolerance_) continue;
+    if (end - first == 1) {
+      for (const double knot : {from, to}) {
+        if (multiplicity(knot) < p) added.push_back(knot);
+      }
+      continue;
+    }
+    double before = bounds_[first] * bounds_[first];
+    std::size_t place = first + 1;
+    while (place + 1 < end && before < sum / 2) {
+      before += bounds_[place] * bounds_[place];
+      ++place;
+    }
+    added.push_back(data_.at[place]);
+  }
+  spline_.knots.insert(spline_.knots.end(), added.begin(), added.end());
+  std::sort(spline_.knots.begin(), spline_.knots.end());
+}
+
+Result<void> DataReduction::add_knots() {
+  while (true) {
+    const bool settled = fit_all();
+    if (settled && bound() <= tolerance_) return {};
+    const std::size_t knots = spline_.knots.size();
+    if (settled) split_failing_spans();
+    if (spline_.knots.size() == knots) {
+      return fail(ErrorCode::error_bound_missed, "reduced data: the lines can be met within " +
+                                                     number_text(bound()) + ", not " +
+                                                     number_text(tolerance_));
+    }
+    if (spline_.count() > kMaxPoints) {
+      return fail(ErrorCode::too_many_points, "reduced data: a tolerance of " +
+                                                  number_text(tolerance_) + " needs more than " +
+                                                  std::to_string(kMaxPoints) + " points");
+    }
+  }
+}
+
+// Takes knots[knot] out and fits the points around it anew, if the bound still holds.
+bool DataReduction::remove_knot(int knot) {
+  const int p = spline_.degree;
+  Spline fewer = spline_;
+  fewer.knots.erase(fewer.knots.begin() + knot);
+  fewer.points.erase(fewer.points.begin() + std::clamp(knot - p / 2 - 1, 1, fewer.count() - 1));
+  const int last_point = fewer.count() - 1;
+  // Basis functions knot - p - 1 .. knot - 1 are new; as many again to either side are fitted too.
+  const int first = std::max(1, knot - 2 * p - 2), last = std::min(last_point - 1, knot + p);
+  if (!fit_points(fewer, {at_, values_}, first, last)) return false;
+  const int from = std::max(0, first - p), to = std::min(last_point, last + p);
+  const std::vector<double> bounds = measure(fewer, from, to);
+  if (*std::max_element(bounds.begin(), bounds.end()) > tolerance_) return false;
+  const auto begin =
+      std::lower_bound(data_.at.begin(), data_.at.end(), fewer.knots[index_of(from + p)]) -
+      data_.at.begin();
+  std::copy(bounds.begin(), bounds.end(), bounds_.begin() + begin);
+  spline_ = std::move(fewer);
+  return true;
+}
+
+void DataReduction::remove_knots() {
+  constexpr int kMostPasses = 2;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    bool removed = false;
+    for (int knot = spline_.degree + 1; knot < spline_.count();) {
+      const bool spared = remove_knot(knot);
+      removed = removed || spared;
+      if (!spared) ++knot;
+    }
+    if (!removed) return;
+  }
+}
+
+}  // namespace
+
+Result<FittedCurve> reduce_data(std::span<const double> times, std::span<const double> values,
+                                double tolerance, int degree) {
+  const std::string what = "reduced data";
+  const Samples data{times, values};
+  if (degree < 1 || degree > kMaxDegree) {
+    return fail(ErrorCode::degree_out_of_range, what + ": degree " + std::to_string(degree) +
+                                                    " is outside 1.." + std::to_string(kMaxDegree));
+  }
+  if (!(tolerance > 0) || !std::isfinite(tolerance)) {
+    return fail(ErrorCode::value_out_of_range,
+                what + ": a tolerance of " + number_text(tolerance) + " must be above 0");
+  }
+  if (auto good = check_samples(what, data, 1); !good) return good.error();
+  if (times.size() < 2) {
+    return fail(ErrorCode::too_few_points,
+                what + ": 2 data or more are needed, found " + std::to_string(times.size()));
+  }
+  DataReduction reduction(data, tolerance, degree);
+  if (auto good = reduction.add_knots(); !good) return good.error();
+  reduction.remove_knots();
+  auto curve = curve_of("reduced", reduction.spline());
+  if (!curve) return std::move(curve).error();
+  return fitted_curve(std::move(*curve), values, reduction.bound());
+}
+
+}  // namespace knotwave::curves

@@ -229,10 +229,12 @@ TEST(SvgPath, StaysWithinTheErrorForAnyCurve) {
 TEST(SvgPath, WritesACircleWithinTheErrorItStates) {
   const auto circle = curves::ellipse(100, 100);
   ASSERT_TRUE(circle);
-  for (const double asked : {5.0, 0.1, 1e-3}) {
+  const std::pair<double, int> cases[] = {{1, 8}, {1.0 / 16, 16}, {1e-3, 64}, {1e-6, 256}};
+  for (const auto& [asked, cubics] : cases) {
     const auto path = svg_path_from_curve(*circle, asked);
     ASSERT_TRUE(path) << path.error().message;
     EXPECT_EQ(path->d.back(), 'Z');
+    EXPECT_EQ(std::count(path->d.begin(), path->d.end(), 'C'), cubics);
     EXPECT_LE(path->max_error, asked);
     double worst = 0;
     const auto curves = read(path->d, SvgY::up);

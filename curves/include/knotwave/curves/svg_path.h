@@ -34,9 +34,9 @@ struct SvgPath {
 /// degree above 3, so that no point is farther than max_error from the curve's at the same u. A 2-D
 /// curve is its own path; a 1-D one is drawn as value over u. Jumps begin a new subpath; a curve
 /// that ends where it begins is closed by Z. Numbers are written so that they read back to the bit.
-/// The bound of a rational curve is cautious: a circle takes 16 cubics at 1/1000 of its radius, 160
-/// at 1e-5. Errors: dimension_mismatch (3 or 4 coordinates), value_out_of_range (max_error not
-/// above 0), error_bound_missed (4096 pieces, or halving a span 16 times, are not enough).
+/// A circle takes 8 cubics at 1/100 of its radius and twice as many for each factor 16 below.
+/// Errors: dimension_mismatch (3 or 4 coordinates), value_out_of_range (max_error not above 0),
+/// error_bound_missed (4096 pieces, or halving a span 16 times, are not enough).
 Result<SvgPath> svg_path_from_curve(const NurbsCurve& curve, double max_error, SvgY y = SvgY::up);
 
 }  // namespace knotwave::curves

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Polynomials on [0, 1] by their Bernstein coefficients, in double-double. Private to curves.
+// [control]
+// Source: Farouki & Rajan, Algorithms for polynomials in Bernstein form, CAGD 5 (1988).
+#pragma once
+#include <span>
+#include <vector>
+
+#include "double_double.h"
+
+namespace knotwave::curves {
+
+using Bernstein = std::vector<DoubleDouble>;  ///< [degree+1]
+
+Bernstein operator*(const Bernstein& a, const Bernstein& b);
+/// Of the same degree.
+Bernstein operator+(const Bernstein& a, const Bernstein& b);
+Bernstein operator-(const Bernstein& a, const Bernstein& b);
+Bernstein derivative(const Bernstein& a);
+/// The same over [t0, t1], 0 <= t0 < t1 <= 1.
+Bernstein part_of(Bernstein a, DoubleDouble t0, DoubleDouble t1);
+
+/// Its value at t over max(t, 1-t)^degree: the sign, and quotients of equal degree, are right.
+DoubleDouble scaled_value(std::span<const DoubleDouble> a, double t) noexcept;
+/// numerator / denominator at t, of equal degree; at 0 and 1 the quotient of the end coefficients.
+DoubleDouble quotient_at(const Bernstein& numerator, const Bernstein& denominator,
+                         double t) noexcept;
+
+/// Every t in (0, 1) where the sign changes, in order, within 2^-53 of a place where a polynomial
+/// does whose coefficients are 2^-96 of the largest away. Found by variation diminishing: a part
+/// whose coefficients change sign once has one root, others are halved, down to 2^-50 (where roots
+/// stay together, the part counts as one place).
+std::vector<double> sign_changes(const Bernstein& a);
+
+}  // namespace knotwave::curves

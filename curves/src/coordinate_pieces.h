@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// One coordinate of a curve as quotients of polynomials, and where it rises and falls. Private to
+// curves. [control]
+#pragma once
+#include <vector>
+
+#include "knotwave/curves/nurbs_curve.h"
+
+#include "bernstein.h"
+
+namespace knotwave::curves {
+
+/// A coordinate over one span of positive length: numerator / weight at t = (u - u0) / (u1 - u0).
+struct CoordinatePiece {
+  double u0 = 0;
+  double u1 = 1;
+  Bernstein numerator;
+  Bernstein weight;
+
+  DoubleDouble at(double t) const noexcept { return quotient_at(numerator, weight, t); }
+  /// The ends are the knots themselves.
+  double parameter(double t) const noexcept;
+};
+std::vector<CoordinatePiece> coordinate_pieces(const NurbsCurve& curve, int coordinate);
+
+/// A part of a piece from t0 to t1 on which the coordinate doesn't turn.
+struct MonotonePart {
+  std::size_t piece = 0;
+  double t0 = 0;
+  double t1 = 1;
+  DoubleDouble value0;
+  DoubleDouble value1;
+};
+/// In order, all of the domain. `rational`: whether the weights differ.
+std::vector<MonotonePart> monotone_parts(const std::vector<CoordinatePiece>& pieces, bool rational);
+
+}  // namespace knotwave::curves

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+#include "knotwave/curves/analysis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "knotwave/curves/algorithms.h"
+
+#include "random_curve.h"
+#include "support/seed.h"
+
+namespace knotwave::test {
+namespace {
+
+using curves::Break;
+using curves::CurveSpec;
+using curves::NurbsCurve;
+using curves::Side;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+NurbsCurve made(CurveSpec spec) {
+  spec.name = "example";
+  auto curve = NurbsCurve::create(std::move(spec));
+  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
+  return std::move(*curve);
+}
+
+NurbsCurve scalar(int degree, std::vector<double> points, std::vector<double> knots = {},
+                  std::vector<double> jumps = {}) {
+  CurveSpec spec;
+  spec.degree = degree;
+  spec.points = std::move(points);
+  spec.knots = std::move(knots);
+  spec.jumps = std::move(jumps);
+  return made(std::move(spec));
+}
+
+/// Random, one in four with a jump at one of its inner knots.
+NurbsCurve any_curve(Dice& dice) {
+  NurbsCurve curve = random_curve(dice);
+  if (!curve.is_clamped() || curve.is_periodic() || !dice.one_in(2)) return curve;
+  auto parts = to_bezier(curve);
+  const auto at = std::size_t(dice.below(int(parts.size()) + 1));
+  if (at == 0 || at == parts.size()) return curve;
+  CurveSpec spec = curve.spec();
+  const double u = parts[at].u0;
+  const int have = int(std::count(spec.knots.begin(), spec.knots.end(), u));
+  const auto finer = have < curve.degree() ? insert_knot(curve, u, curve.degree() - have) : curve;
+  if (!finer) return curve;
+  spec = finer->spec();
+  const auto knot = std::find(spec.knots.begin(), spec.knots.end(), u);
+  const auto point = knot - spec.knots.begin();  // the right side's first
+  spec.knots.insert(knot, u);
+  std::vector<double> twice(spec.points.begin() + (point - 1) * spec.dim,
+                            spec.points.begin() + point * spec.dim);
+  for (double& x : twice) x = -x;
+  spec.points.insert(spec.points.begin() + point * spec.dim, twice.begin(), twice.end());
+  if (!spec.weights.empty())
+    spec.weights.insert(spec.weights.begin() + point, dice.between(0.5, 2));
+  spec.jumps = {u};
+  return made(std::move(spec));
+}
+
+double value_at(const NurbsCurve& curve, double u, Side side, int coordinate) {
+  double out[curves::kMaxDim];
+  curve.evaluate(u, side, out);
+  return out[coordinate];
+}
+
+double ulp_of_points(const NurbsCurve& curve) { return ulp_of(largest_coordinate(curve)); }
+
+double ulp_of_knots(const NurbsCurve& curve) {
+  return ulp_of(std::max(std::abs(curve.u_min()), std::abs(curve.u_max())));
+}
+
+TEST(ValueRange, TurnsEndsAndJumpsCount) {
+  const auto hump = value_range(scalar(2, {0, 2, 0}));
+  EXPECT_EQ(hump.high.value, 1);
+  EXPECT_EQ(hump.high.u, 0.5);
+  EXPECT_EQ(hump.low.value, 0);
+  EXPECT_EQ(hump.low.u, 0) << "the first of both ends";
+  const auto steps = value_range(scalar(1, {0, 5, -3, 1}, {0, 0, 0.5, 0.5, 1, 1}, {0.5}));
+  EXPECT_EQ(steps.high.value, 5);
+  EXPECT_EQ(steps.low.value, -3);
+  EXPECT_EQ(steps.high.u, 0.5);
+  EXPECT_EQ(steps.low.u, 0.5);
+  const auto flat = value_range(scalar(3, {0.1, 0.1, 0.1, 0.1}));
+  EXPECT_EQ(flat.low.value, 0.1);
+  EXPECT_EQ(flat.high.value, 0.1);
+}
+
+// Chromium, ui/gfx/geometry/cubic_bezier_unittest.cc, Range.
+TEST(ValueRange, IsThatOfChromiumsEasings) {
+  const auto y = [](double y1, double y2) { return value_range(scalar(3, {0, y1, y2, 1})); };
+  EXPECT_NEAR(y(-0.75, 0.5).low.value, -0.225, 1e-2);
+  EXPECT_NEAR(y(0.5, 1.5).high.value - y(0.5, 1.5).low.value, 1.0, 0.3);
+  EXPECT_EQ(y(0.25, 0.75).low.value, 0);
+  EXPECT_EQ(y(0.25, 0.75).high.value, 1);
+}
+
+TEST(ValueRange, NoPlaceOfARandomCurveIsOutside) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < support::test_count(3000); ++round) {
+    const NurbsCurve curve = any_curve(dice);
+    const int c = dice.below(curve.dim());
+    const auto range = value_range(curve, c);
+    const auto hull = hull_range(curve, c);
+    const double slack = ulp_of_points(curve);
+    EXPECT_GE(range.low.value, hull.low);
+    EXPECT_LE(range.high.value, hull.high);
+    for (int i = 0; i < 20; ++i) {
+      const double x = value_at(curve, random_parameter(dice, curve),
+                                dice.one_in(2) ? Side::left : Side::right, c);
+      ASSERT_GE(x, range.low.value - slack);
+      ASSERT_LE(x, range.high.value + slack);
+    }
+    // And it is taken where it is said to be, from one side or the other.
+    for (const auto& end : {range.low, range.high}) {
+      const double off = std::min(std::abs(value_at(curve, end.u, Side::left, c) - end.value),
+                                  std::abs(value_at(curve, end.u, Side::right, c) - end.value));
+      double slopes[2 * curves::kMaxDim];
+      curve.derivatives(end.u, 1, Side::right, slopes);
+      const double moved = std::abs(slopes[curve.dim() + c]) * ulp_of_knots(curve);
+      EXPECT_LE(off, 2 * slack + 4 * moved) << "round " << round;
+    }
+  }
+}
+
+TEST(ParametersAt, CrossingsTouchesStretchesAndJumps) {
+  const NurbsCurve hump = scalar(2, {0, 2, 0});
+  EXPECT_THAT(parameters_at(hump, 0.75), ElementsAre(0.25, 0.75));
+  EXPECT_THAT(parameters_at(hump, 1), ElementsAre(0.5)) << "a touch, once";
+  EXPECT_THAT(parameters_at(hump, 0), ElementsAre(0, 1));
+  EXPECT_THAT(parameters_at(hump, 1.01), IsEmpty());
+  EXPECT_THAT(parameters_at(hump, std::nan("")), IsEmpty());
+  EXPECT_THAT(parameters_at(hump, kInfinity), IsEmpty());
+  const NurbsCurve steps = scalar(1, {0, 1, 3, 4}, {0, 0, 0.5, 0.5, 1, 1}, {0.5});
+  EXPECT_THAT(parameters_at(steps, 2), ElementsAre(0.5)) << "at the jump";
+  EXPECT_THAT(parameters_at(steps, 1), ElementsAre(0.5)) << "its left side";
+  EXPECT_THAT(parameters_at(steps, 3), ElementsAre(0.5)) << "its right side";
+  const NurbsCurve table = scalar(1, {0, 1, 1, 1, 0}, {0, 0, 1, 2, 3, 4, 4});
+  EXPECT_THAT(parameters_at(table, 1), ElementsAre(1, 3)) << "the ends of a stretch";
+  EXPECT_THAT(parameters_at(table, 0.5), ElementsAre(0.5, 3.5));
+  EXPECT_THAT(parameters_at(scalar(2, {7, 7, 7}), 7), ElementsAre(0, 1));
+}
+
+TEST(ParametersAt, APeriodicCurveHasItsSeamOnce) {
+  CurveSpec spec;
+  spec.degree = 1;
+  spec.points = {0, 1, 0, -1};
+  spec.periodic = true;
+  const NurbsCurve triangle = made(spec);
+  EXPECT_THAT(parameters_at(triangle, 0), ElementsAre(0, 0.5));
+  EXPECT_THAT(parameters_at(triangle, 1), ElementsAre(0.25));
+  EXPECT_THAT(parameters_at(triangle, -0.5), ElementsAre(0.625, 0.875));
+}
+
+TEST(ParametersAt, EveryPlaceOfARandomCurveIsFoundAgain) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < support::test_count(3000); ++round) {
+    const NurbsCurve curve = any_curve(dice);
+    const int c = dice.below(curve.dim());
+    const double u = std::clamp(random_parameter(dice, curve), curve.u_min(), curve.u_max());
+    const double value = value_at(curve, u, Side::right, c);
+    const std::vector<double> found = parameters_at(curve, value, c);
+    ASSERT_FALSE(found.empty()) << "round " << round;
+    ASSERT_TRUE(std::is_sorted(found.begin(), found.end()));
+    // Each has the value, but for what 4 ulp of u make of it; or the value is jumped across.
+    const double beside = 4 * ulp_of_knots(curve);
+    for (const double x : found) {
+      const double left = value_at(curve, x, Side::left, c) - value;
+      const double right = value_at(curve, x, Side::right, c) - value;
+      const double below = value_at(curve, std::max(x - beside, curve.u_min()), Side::left, c);
+      const double above = value_at(curve, std::min(x + beside, curve.u_max()), Side::left, c);
+      const double slack = 2 * ulp_of_points(curve) + std::abs(below - above);
+      EXPECT_TRUE(left * right <= 0 || (below - value) * (above - value) <= 0 ||
+                  std::min(std::abs(left), std::abs(right)) <= slack)
+          << "round " << round << ": " << left << " and " << right << " at " << x;
+    }
+  }
+}
+
+TEST(TotalVariation, IsWhatARiseAFallAndAJumpAddUpTo) {
+  EXPECT_EQ(total_variation(scalar(2, {0, 2, 0})), 2);
+  EXPECT_EQ(total_variation(scalar(1, {0, 5, -3, 1}, {0, 0, 0.5, 0.5, 1, 1}, {0.5})), 5 + 8 + 4);
+  EXPECT_EQ(total_variation(scalar(3, {0.1, 0.1, 0.1, 0.1, 0.1})), 0);
+}
+
+// Variation diminution (The NURBS Book, 3.2): a curve moves no more than its polygon.
+TEST(TotalVariation, IsAtMostThatOfTheControlPolygon) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < support::test_count(3000); ++round) {
+    const NurbsCurve curve = any_curve(dice);
+    const int c = dice.below(curve.dim());
+    double polygon = 0;
+    for (int i = 1; i < curve.point_count(); ++i) {
+      polygon += std::abs(curve.points()[std::size_t(i * curve.dim() + c)] -
+                          curve.points()[std::size_t((i - 1) * curve.dim() + c)]);
+    }
+    const auto range = value_range(curve, c);
+    const double moved = total_variation(curve, c);
+    EXPECT_LE(moved, polygon * (1 + 1e-15) + ulp_of_points(curve));
+    EXPECT_GE(moved, range.high.value - range.low.value - ulp_of_points(curve));
+  }
+}
+
+TEST(SpanHulls, HoldTheirSpans) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < support::test_count(3000); ++round) {
+    const NurbsCurve curve = any_curve(dice);
+    const int c = dice.below(curve.dim());
+    const auto hulls = span_hulls(curve, c);
+    EXPECT_EQ(hulls.back().u1, curve.u_max());
+    for (std::size_t i = 0; i < hulls.size(); ++i) {
+      EXPECT_EQ(hulls[i].u0, i > 0 ? hulls[i - 1].u1 : curve.u_min());
+      for (const double share : {0.0, dice.unit(), 1.0}) {
+        const double u = std::min(hulls[i].u0 + share * (hulls[i].u1 - hulls[i].u0), hulls[i].u1);
+        const double x = value_at(curve, u, u == hulls[i].u0 ? Side::right : Side::left, c);
+        EXPECT_GE(x, hulls[i].low - ulp_of_points(curve));
+        EXPECT_LE(x, hulls[i].high + ulp_of_points(curve));
+      }
+    }
+  }
+}
+
+TEST(ClosestPoint, OfAQuarterCircle) {
+  CurveSpec spec;
+  spec.degree = 2;
+  spec.dim = 2;
+  spec.points = {1, 0, 1, 1, 0, 1};
+  spec.weights = {1, std::sqrt(0.5), 1};
+  const NurbsCurve arc = made(spec);
+  const auto diagonal = closest_point(arc, std::vector<double>{2, 2});
+  ASSERT_TRUE(diagonal);
+  EXPECT_NEAR(diagonal->u, 0.5, 1e-15);
+  EXPECT_NEAR(diagonal->distance, std::sqrt(8.0) - 1, 1e-15);
+  EXPECT_EQ(closest_point(arc, std::vector<double>{3, -1})->u, 0) << "an end";
+  const auto centre = closest_point(arc, std::vector<double>{0, 0});
+  EXPECT_NEAR(centre->distance, 1, 1e-15) << "every place is as near";
+  EXPECT_EQ(closest_point(arc, std::vector<double>{1}).error().code, ErrorCode::dimension_mismatch);
+  EXPECT_EQ(closest_point(arc, std::vector<double>{1, kInfinity}).error().code,
+            ErrorCode::not_finite);
+  EXPECT_EQ(closest_point(arc, std::vector<double>{1, 2e6}).error().code,
+            ErrorCode::coordinate_out_of_range);
+}
+
+TEST(ClosestPoint, NoOtherPlaceOfARandomCurveIsNearer) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < support::test_count(1000); ++round) {
+    const NurbsCurve curve = any_curve(dice);
+    const double most = largest_coordinate(curve);
+    std::vector<double> point(std::size_t(curve.dim()));
+    for (double& x : point) x = std::clamp(1.5 * most * dice.between(-1, 1), -1e6, 1e6);
+    const auto best = closest_point(curve, point);
+    ASSERT_TRUE(best);
+    const auto distance = [&](double u, Side side) {
+      double out[curves::kMaxDim], square = 0;
+      curve.evaluate(u, side, out);
+      for (std::size_t c = 0; c < point.size(); ++c) {
+        square += (out[c] - point[c]) * (out[c] - point[c]);
+      }
+      return std::sqrt(square);
+    };
+    for (int i = 0; i < 30; ++i) {
+      const double u = std::clamp(random_parameter(dice, curve), curve.u_min(), curve.u_max());
+      const Side side = dice.one_in(2) ? Side::left : Side::right;
+      ASSERT_GE(distance(u, side), best->distance - 4 * ulp_of(2.5 * most)) << "round " << round;
+    }
+  }
+}
+
+TEST(BreaksOf, SayWhatJumpsFirst) {
+  // A value's jump at 0.25, a corner at 0.5, a jump of curvature at 0.75.
+  const NurbsCurve steps = scalar(1, {0, 1, 3, 4, 0}, {0, 0, 0.5, 0.5, 0.75, 1, 1}, {0.5});
+  const auto found = breaks_of(steps, 3);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].u, 0.5);
+  EXPECT_EQ(found[0].order, 0);
+  EXPECT_EQ(found[0].size, 2);
+  EXPECT_EQ(found[1].u, 0.75);
+  EXPECT_EQ(found[1].order, 1);
+  EXPECT_EQ(found[1].size, -16 - 4);
+  EXPECT_EQ(breaks_of(steps, 0).size(), 1u);
+  EXPECT_THAT(breaks_of(steps, -1), IsEmpty());
+  const auto cubic = breaks_of(scalar(3, {0, 1, 0, 1, 0}, {0, 0, 0, 0, 1, 2, 2, 2, 2}), 3);
+  ASSERT_EQ(cubic.size(), 1u);
+  EXPECT_EQ(cubic[0].order, 3);
+}
+
+TEST(BreaksOf, TheSeamIsAKnot) {
+  CurveSpec spec;
+  spec.degree = 1;
+  spec.points = {0, 1, 0, -1};
+  spec.periodic = true;
+  const auto corners = breaks_of(made(spec), 2);
+  ASSERT_EQ(corners.size(), 2u) << "0 and 0.5 lie on a line";
+  EXPECT_EQ(corners[0].u, 0.25);
+  EXPECT_EQ(corners[0].size, -8);
+  EXPECT_EQ(corners[1].u, 0.75);
+  spec.points = {1, 0, -1, 0};
+  const auto at_seam = breaks_of(made(spec), 2);
+  ASSERT_EQ(at_seam.size(), 2u);
+  EXPECT_EQ(at_seam[0].u, 0);
+  EXPECT_EQ(at_seam[0].size, -8);
+}
+
+TEST(BreaksOf, AnInsertedKnotIsNone) {
+  Dice dice(support::test_seed());
+  int inserted = 0;
+  for (int round = 0; round < support::test_count(2000); ++round) {
+    const NurbsCurve curve = random_curve(dice);
+    const double u = dice.between(curve.u_min(), curve.u_max());
+    const auto knots = curve.knots();
+    if (std::count(knots.begin(), knots.end(), u) > 0) continue;
+    const auto finer = insert_knot(curve, u, 1 + dice.below(curve.degree()));
+    if (!finer) continue;
+    ++inserted;
+    for (const Break& found : breaks_of(*finer, curve.degree())) {
+      EXPECT_NE(found.u, u) << "round " << round << " order " << found.order << " " << found.size;
+    }
+  }
+  EXPECT_GT(inserted, support::test_count(1000));
+}
+
+}  // namespace
+}  // namespace knotwave::test

@@ -150,11 +150,11 @@ Result<double> integral(const NurbsCurve& curve, double u_a, double u_b, int coo
   for (const CoordinatePiece& piece : coordinate_pieces(curve, coordinate)) {
     const double from = std::max(low, piece.u0), to = std::min(high, piece.u1);
     if (!(from < to)) continue;
-    if (!(t1.hi > 0)) continue;  // too short for a double
     // A polynomial's mean is that of its Bernstein coefficients.
     const DoubleDouble width = DoubleDouble::difference(piece.u1, piece.u0);
     const DoubleDouble t0 = DoubleDouble::difference(from, piece.u0) / width;
     const DoubleDouble t1 = DoubleDouble::difference(to, piece.u0) / width;
+    if (!(t1.hi > 0)) continue;  // too short for a double
     const Bernstein part = part_of(piece.numerator, t0, t1);
     DoubleDouble total = 0.0;
     for (const DoubleDouble& x : part) total += x;

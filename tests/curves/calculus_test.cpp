@@ -91,6 +91,19 @@ TEST(Hodograph, OfAPeriodicCurveIsPeriodicUnlessItHasCorners) {
   EXPECT_EQ(value_at(*steps, 0.1), 4);
 }
 
+/// A curve that is cut open has its points rounded before their differences are taken: one ulp of
+/// the largest point over the narrowest p spans that two points share.
+double rounding_of_cut(const NurbsCurve& curve) {
+  const auto open = *curves::sub_curve(curve, curve.u_min(), curve.u_max());
+  const auto p = static_cast<std::size_t>(curve.degree());
+  double width = curve.u_max() - curve.u_min();
+  for (std::size_t i = 1; i + p + 1 < open.knots().size(); ++i) {
+    const double shared = open.knots()[i + p] - open.knots()[i];
+    if (shared > 0) width = std::min(width, shared);
+  }
+  return ulp_of(largest_coordinate(curve)) * curve.degree() / width;
+}
+
 TEST(Hodograph, IsTheDerivativeFromEitherSide) {
   Dice dice(support::test_seed());
   int done = 0;
@@ -111,8 +124,8 @@ TEST(Hodograph, IsTheDerivativeFromEitherSide) {
     curve.derivatives(u, 1, side, exact);
     slope->evaluate(u, side, found);
     for (int c = 0; c < curve.dim(); ++c) {
-      const double error =
-          std::abs(found[c] - exact[curve.dim() + c]) / ulp_of(largest_coordinate(*slope));
+      const double unit = ulp_of(largest_coordinate(*slope)) + (cut ? rounding_of_cut(curve) : 0);
+      const double error = std::abs(found[c] - exact[curve.dim() + c]) / unit;
       worst = std::max(worst, error);
       ASSERT_LE(error, 4) << "round " << round << " degree " << curve.degree() << " at " << u;
     }

@@ -11,9 +11,9 @@ namespace knotwave::curves {
 /// The derivative by u as a curve, each point rounded once. Degree p - 1, over the same domain, one
 /// degree less smooth at each knot: a corner becomes a declared jump between its two slopes. Degree
 /// 1 gives steps, written at degree 1 with a jump at every inner knot. A periodic curve without
-/// corners stays periodic; one with corners, or of degree 1, becomes clamped over one period.
-/// Errors: unsupported (weights; a jump, where there is no slope: split() there),
-/// coordinate_out_of_range (steeper than kMaxCoordinate).
+/// corners stays periodic; one with corners, or of degree 1, is cut open first: clamped over one
+/// period, its points rounded before the slopes. Errors: unsupported (weights; a jump, where there
+/// is no slope: split() there), coordinate_out_of_range (steeper than kMaxCoordinate).
 Result<NurbsCurve> hodograph(const NurbsCurve& curve);
 
 /// A(u) = start + integral of C from u_min to u, in every coordinate: the phase of a frequency

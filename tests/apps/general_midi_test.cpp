@@ -3,6 +3,7 @@
 // ITU-R BS.1770 (libebur128), ending in silence.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -92,10 +93,18 @@ TEST(GeneralMidi, ASampleOfTheCorpusIsUnclippedAndSensiblyLoud) {
   check_songs(songs);
 }
 
-TEST(GeneralMidiStress, EveryFileOfTheCorpusIsUnclippedAndSensiblyLoud) {
+/// A share of the corpus a test, so that the shares run side by side.
+constexpr int kShares = 8;
+class GeneralMidiStress : public testing::TestWithParam<int> {};
+
+TEST_P(GeneralMidiStress, EveryFileOfTheCorpusIsUnclippedAndSensiblyLoud) {
   const auto all = knotwave::support::corpus_files("midi", {".mid"});
   if (all.empty()) GTEST_SKIP() << "KNOTWAVE_CORPUS is not set: no file of the corpus was run";
-  check_songs(all);
+  const auto share = static_cast<std::size_t>(GetParam());
+  std::vector<std::string> songs;
+  for (std::size_t i = share; i < all.size(); i += kShares) songs.push_back(all[i]);
+  check_songs(songs);
 }
+INSTANTIATE_TEST_SUITE_P(Shares, GeneralMidiStress, testing::Range(0, kShares));
 
 }  // namespace

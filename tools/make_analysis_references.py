@@ -4,9 +4,10 @@
 places and areas, right to 30 digits and then rounded to the nearest double.
 
 An oracle from outside: each span becomes a fraction of polynomials by the Cox-de Boor recursion in
-rationals (make_curve_references.py); roots are those of mpmath's polyroots at 40 digits. Needs mpmath.
+rationals (exact_curves.py); roots are those of mpmath's polyroots at 40 digits. Needs mpmath.
 
     tools/make_analysis_references.py            writes the file
+    tools/make_analysis_references.py --check    exit 1 if the file is not what would be written
 
 Format, one record a line, numbers as hexadecimal floats:
     curve DEGREE DIM PERIODIC      starts a curve; then knots, points, weights (may be empty), jumps
@@ -19,11 +20,12 @@ Format, one record a line, numbers as hexadecimal floats:
 import itertools
 import pathlib
 import random
+import sys
 from fractions import Fraction
 
 import mpmath
 
-import make_curve_references as curves
+from exact_curves import basis_series, curve_records, expanded, hexes, random_knots, write_or_check
 
 mpmath.mp.dps = 40
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "tests/golden/curves/analysis.txt"
@@ -38,13 +40,12 @@ class Span:
 
     def __init__(self, curve, knots, index, points, weights):
         degree, dim = curve["degree"], curve["dim"]
-        curves.ORDER = degree
         self.low, self.high = knots[index], knots[index + 1]
         known = {}
         self.tops = [[Fraction(0)] * (degree + 1) for _ in range(dim)]
         self.bottom = [Fraction(0)] * (degree + 1)
         for i in range(index - degree, index + 1):
-            series = curves.basis_series(knots, i, degree, self.low, index, known)
+            series = basis_series(knots, i, degree, self.low, index, known, degree)
             for k in range(degree + 1):
                 self.bottom[k] += weights[i] * series[k]
                 for c in range(dim):
@@ -97,19 +98,9 @@ def roots_in(p, length):
 
 def spans_of(curve):
     degree = curve["degree"]
-    knots = [Fraction(x) for x in curve["knots"]]
-    points = [Fraction(x) for x in curve["points"]]
-    count = len(points) // curve["dim"]
-    weights = [Fraction(x) for x in curve["weights"]] or [Fraction(1)] * count
-    if curve["periodic"]:
-        period = knots[-1] - knots[0]
-        knots = ([k - period for k in knots[-1 - degree:-1]] + knots +
-                 [k + period for k in knots[1:1 + degree]])
-        points += points[:degree * curve["dim"]]
-        weights += weights[:degree]
-        count += degree
+    knots, points, weights = expanded(curve)
     return [Span(curve, knots, i, points, weights)
-            for i in range(degree, count) if knots[i] < knots[i + 1]]
+            for i in range(degree, len(weights)) if knots[i] < knots[i + 1]]
 
 
 def ups_and_downs(spans):
@@ -171,22 +162,16 @@ def some_curves():
             if kind == "periodic":
                 curve["knots"] = [0.0] + sorted(rng.random() for _ in range(count - 1)) + [1.0]
             else:
-                curve["knots"] = curves.random_knots(rng, degree, count, kind)
+                curve["knots"] = random_knots(rng, degree, count, kind)
             curve["points"] = [2 * rng.random() - 1 for _ in range(count * dim)]
             curve["weights"] = [0.25 + 2 * rng.random() for _ in range(count)] if turn % 2 else []
             yield curve, rng
 
 
-def hexes(numbers):
-    return " ".join(float(x).hex() for x in numbers)
-
-
 def text():
     lines = ["# Made by tools/make_analysis_references.py; its head explains the format."]
     for curve, rng in some_curves():
-        lines.append(f"curve {curve['degree']} {curve['dim']} {int(curve['periodic'])}")
-        for part in ("knots", "points", "weights", "jumps"):
-            lines.append(f"{part} {hexes(curve[part])}".rstrip())
+        lines += curve_records(curve)
         spans = spans_of(curve)
         values = list(ups_and_downs(spans))
         lines.append("range " + hexes([min(values), max(values)]))
@@ -209,4 +194,4 @@ def text():
 
 
 if __name__ == "__main__":
-    TARGET.write_text(text())
+    sys.exit(write_or_check(TARGET, text()))

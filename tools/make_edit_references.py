@@ -5,7 +5,7 @@
 An oracle from outside: the operation is not carried out at all. What it must give at u is computed
 pointwise in rationals from the curves it starts from (the product's value is the product of two
 values, that of a bent curve is the value at the bent parameter), with the Cox-de Boor recursion of
-make_curve_references.py, and rounded once. Standard library only.
+exact_curves.py, and rounded once. Standard library only.
 
     tools/make_edit_references.py            writes the file
     tools/make_edit_references.py --check    exit 1 if the file is not what would be written
@@ -21,14 +21,13 @@ import random
 import sys
 from fractions import Fraction
 
-import make_curve_references as curves
+from exact_curves import curve_records, exact_derivatives, hexes, rounded, write_or_check
 
 TARGET = pathlib.Path(__file__).resolve().parent.parent / "tests/golden/curves/edits.txt"
-curves.ORDER = 0  # values, no derivatives
 
 
 def value(curve, u, side="R"):
-    return curves.exact_derivatives(curve, u, side)[0]
+    return exact_derivatives(curve, u, side, 0)[0]
 
 
 def domain(curve):
@@ -210,26 +209,13 @@ def cases():
 def text():
     lines = ["# Made by tools/make_edit_references.py; its head explains the format."]
     for name, arguments, operands, values in cases():
-        lines.append(f"edit {name} {curves.hexes(arguments)}".rstrip())
+        lines.append(f"edit {name} {hexes(arguments)}".rstrip())
         for curve in operands:
-            lines.append(f"curve {curve['degree']} {curve['dim']} {int(curve['periodic'])}")
-            for part in ("knots", "points", "weights", "jumps"):
-                lines.append(f"{part} {curves.hexes(curve[part])}".rstrip())
+            lines += curve_records(curve)
         for u, side, numbers in values:
-            rounded = curves.hexes(curves.rounded(x) for x in numbers)
-            lines.append(f"at {float(u).hex()} {side} {rounded}")
+            lines.append(f"at {float(u).hex()} {side} {hexes(rounded(x) for x in numbers)}")
     return "\n".join(lines) + "\n"
 
 
-def main():
-    if sys.argv[1:] == ["--check"]:
-        if TARGET.read_text() != text():
-            print(f"{TARGET} is not what {sys.argv[0]} writes", file=sys.stderr)
-            return 1
-        return 0
-    TARGET.write_text(text())
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_or_check(TARGET, text()))

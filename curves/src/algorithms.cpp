@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 
 #include "homogeneous.h"
 #include "span_basis.h"
@@ -12,8 +13,8 @@
 namespace knotwave::curves {
 namespace {
 
+using base::index_of;
 using base::number_text;
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 Error outside(const NurbsCurve& curve, double u, const std::string& rule) {
   return fail(ErrorCode::parameter_out_of_range,

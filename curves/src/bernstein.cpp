@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knotwave/base/index.h"
+
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 int degree_of(std::span<const DoubleDouble> a) { return static_cast<int>(a.size()) - 1; }
 
 /// What sign_changes() works with.

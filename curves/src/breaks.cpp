@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knotwave/base/index.h"
 #include "knotwave/curves/algorithms.h"
 #include "knotwave/curves/analysis.h"
 
@@ -10,7 +11,7 @@
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 /// What derivative k of a curve with control points up to 1 can be at most at u, for k up to
 /// `max_order`: with s_k the sum of the basis functions' |k-th derivatives|, each with its share of

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 #include "knotwave/curves/algorithms.h"
 
 #include "coordinate_pieces.h"
@@ -14,8 +15,8 @@
 namespace knotwave::curves {
 namespace {
 
+using base::index_of;
 using base::number_text;
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 Error weighted(const NurbsCurve& curve, const std::string& what) {
   return fail(ErrorCode::unsupported,

@@ -8,43 +8,23 @@
 #include <optional>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 #include "knotwave/curves/combine.h"
 
+#include "bernstein.h"
 #include "curve_chain.h"
 #include "curve_distance.h"
 
 namespace knotwave::curves {
 namespace {
 
+using base::index_of;
 using base::number_text;
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
-
-using Polynomial = std::vector<DoubleDouble>;  // Bernstein coefficients
-
-Polynomial operator*(const Polynomial& f, const Polynomial& g) {
-  const std::size_t m = f.size() - 1, n = g.size() - 1;
-  Polynomial product(m + n + 1);
-  double ways_f = 1;  // C(m, i)
-  for (std::size_t i = 0; i <= m; ++i) {
-    double ways_g = 1;  // C(n, j)
-    for (std::size_t j = 0; j <= n; ++j) {
-      product[i + j] += f[i] * g[j] * DoubleDouble(ways_f * ways_g);
-      ways_g = ways_g * static_cast<double>(n - j) / static_cast<double>(j + 1);
-    }
-    ways_f = ways_f * static_cast<double>(m - i) / static_cast<double>(i + 1);
-  }
-  double ways = 1;  // C(m + n, k)
-  for (std::size_t k = 0; k <= m + n; ++k) {
-    product[k] = product[k] / DoubleDouble(ways);
-    ways = ways * static_cast<double>(m + n - k) / static_cast<double>(k + 1);
-  }
-  return product;
-}
 
 // (a f + b g) / over
-Polynomial mixed(DoubleDouble a, const Polynomial& f, DoubleDouble b, const Polynomial& g,
-                 DoubleDouble over) {
-  Polynomial result(f.size());
+Bernstein mixed(DoubleDouble a, const Bernstein& f, DoubleDouble b, const Bernstein& g,
+                DoubleDouble over) {
+  Bernstein result(f.size());
   for (std::size_t i = 0; i < f.size(); ++i) result[i] = (a * f[i] + b * g[i]) / over;
   return result;
 }
@@ -52,7 +32,7 @@ Polynomial mixed(DoubleDouble a, const Polynomial& f, DoubleDouble b, const Poly
 // A span of the inner curve, x over w.
 struct InnerPiece {
   double u0 = 0, u1 = 1;
-  Polynomial x, w;
+  Bernstein x, w;
 
   double value_at_middle() const {
     InnerPiece left = *this;
@@ -64,8 +44,8 @@ struct InnerPiece {
     InnerPiece after = *this;
     const DoubleDouble before_u = DoubleDouble::difference(u, u0);
     const DoubleDouble after_u = DoubleDouble::difference(u1, u);
-    for (Polynomial InnerPiece::*of : {&InnerPiece::x, &InnerPiece::w}) {
-      Polynomial &left = this->*of, &right = after.*of;
+    for (Bernstein InnerPiece::*of : {&InnerPiece::x, &InnerPiece::w}) {
+      Bernstein &left = this->*of, &right = after.*of;
       for (std::size_t level = 1; level < left.size(); ++level) {
         for (std::size_t r = 0; r + level < left.size(); ++r) {
           right[r] = (after_u * right[r] + before_u * right[r + 1]) / (before_u + after_u);
@@ -169,13 +149,13 @@ struct Outer {
 std::optional<CurvePart> composed(const Outer& outer, std::size_t index, const InnerPiece& inner) {
   const double low = outer.starts[index], high = outer.end_of(index);
   const DoubleDouble width = DoubleDouble::difference(high, low);
-  const Polynomial up = mixed(1.0, inner.x, -DoubleDouble(low), inner.w, width);
-  const Polynomial down = mixed(high, inner.w, -1.0, inner.x, width);
+  const Bernstein up = mixed(1.0, inner.x, -DoubleDouble(low), inner.w, width);
+  const Bernstein down = mixed(high, inner.w, -1.0, inner.x, width);
   const std::vector<HomogeneousPoint>& points = outer.pieces[index].points;
   const int dim = outer.curve.dim();
   CurvePart part;
   for (int c = 0; c <= dim; ++c) {
-    std::vector<Polynomial> work;
+    std::vector<Bernstein> work;
     work.reserve(points.size());
     for (const HomogeneousPoint& point : points) {
       work.push_back({c < dim ? point.x[index_of(c)] : point.w});

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knotwave/base/index.h"
+
 #include "weights.h"
 
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 double largest_coordinate(std::span<const HomogeneousPoint> points, int dim) {
   double largest = 0;

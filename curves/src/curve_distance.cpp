@@ -5,10 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "knotwave/base/index.h"
+
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 using Points = std::vector<HomogeneousPoint>;
 
 // de Casteljau at 1/2: `points` becomes its left half, the right one is returned.

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 #include "knotwave/curves/reduce.h"
 
 #include "curve_distance.h"
@@ -18,8 +19,8 @@
 namespace knotwave::curves {
 namespace {
 
+using base::index_of;
 using base::number_text;
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 constexpr std::size_t kChannels = kMaxDim + 1;
 DoubleDouble& channel(HomogeneousPoint& point, std::size_t c) {

@@ -6,6 +6,7 @@
 
 #include "knotwave/base/document.h"
 #include "knotwave/base/elementary.h"
+#include "knotwave/base/index.h"
 
 #include "fitted_curve.h"
 #include "spline_fit.h"
@@ -13,7 +14,7 @@
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 Result<void> check_degree(const std::string& what, int degree) {
   if (degree >= 1 && degree <= kMaxDegree) return {};

@@ -4,6 +4,7 @@
 
 #include "knotwave/base/document.h"
 #include "knotwave/base/elementary.h"
+#include "knotwave/base/index.h"
 #include "knotwave/curves/shapes.h"
 
 #include "double_double.h"
@@ -11,8 +12,8 @@
 namespace knotwave::curves {
 namespace {
 
+using base::index_of;
 using base::number_text;
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 Result<void> check_hermite(std::span<const double> times, std::span<const double> values,
                            std::span<const double> slopes_in, std::span<const double> slopes_out,

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "knotwave/base/index.h"
+
 namespace knotwave::curves {
 namespace {
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 }  // namespace
 
 HomogeneousPoint::HomogeneousPoint(std::span<const double> point, double weight) noexcept

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 
+#include "knotwave/base/index.h"
+
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 using Row = std::vector<DoubleDouble>;
 

@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knotwave/base/index.h"
+
 #include "homogeneous.h"
 
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 // One coordinate of a rational Bézier segment: numerator a, denominator w.
 struct Segment {

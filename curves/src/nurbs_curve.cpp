@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knotwave/base/index.h"
+
 #include "span_basis.h"
 #include "spec_checks.h"
 #include "spec_layout.h"
@@ -11,7 +13,7 @@
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 }  // namespace
 

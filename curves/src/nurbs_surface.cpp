@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knotwave/base/index.h"
+
 #include "span_basis.h"
 #include "spec_checks.h"
 #include "spec_layout.h"
 
 namespace knotwave::curves {
 namespace {
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 KnotSequence sequence_u(const NurbsSurface& surface) {
   return {surface.knots_u(), surface.degree_u(), surface.is_periodic_u()};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knotwave/base/index.h"
 #include "knotwave/curves/algorithms.h"
 
 #include "plot_axes.h"
@@ -15,7 +16,7 @@ Scene surface_scene(const NurbsSurface& surface, const PlotOptions& options);  /
 
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 // What a curve looks like: a plane curve in its plane, any other each coordinate over u.
 struct Trace {

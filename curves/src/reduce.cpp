@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 
 #include "curve_distance.h"
 #include "knot_removal.h"
@@ -14,8 +15,8 @@
 namespace knotwave::curves {
 namespace {
 
+using base::index_of;
 using base::number_text;
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 Result<void> check_tolerance(const NurbsCurve& curve, double tolerance) {
   if (tolerance >= 0 && std::isfinite(tolerance)) return {};

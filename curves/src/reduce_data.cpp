@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 
 #include "curve_distance.h"
 #include "fitted_curve.h"
@@ -14,8 +15,8 @@
 namespace knotwave::curves {
 namespace {
 
+using base::index_of;
 using base::number_text;
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 #include "knotwave/curves/algorithms.h"
 
 #include "double_double.h"
@@ -13,8 +14,8 @@
 namespace knotwave::curves {
 namespace {
 
+using base::index_of;
 using base::number_text;
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 // Where the parameter k goes when [from_low, from_high] is stretched to [to_low, to_high]; the ends
 // go exactly.

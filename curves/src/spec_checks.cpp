@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 
 namespace knotwave::curves {
 namespace {
@@ -13,7 +14,7 @@ using base::number_text;
 using Fault = std::optional<SpecFault>;
 using Part = SpecFault::Part;
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 SpecFault fault(Part part, int index, ErrorCode code, const std::string& what,
                 const std::string& says) {

@@ -6,13 +6,14 @@
 #include <cmath>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 
 #include "span_basis.h"
 
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 // Square, at most `band` numbers to either side of the diagonal that are not 0.
 class BandMatrix {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "knotwave/base/index.h"
+
 #include "curve_chain.h"
 #include "spec_layout.h"
 #include "weights.h"
@@ -10,7 +12,7 @@
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 // Point of `curve` that has exactly `knots` [degree] between its first and last knot, once the
 // missing ones are inserted. No inner knot of `curve` may be a jump.

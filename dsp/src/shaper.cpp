@@ -5,14 +5,15 @@
 #include <array>
 
 #include "knotwave/base/fp_state.h"
+#include "knotwave/base/index.h"
 
 namespace knotwave::dsp {
 namespace {
 
+using base::index_of;
+
 constexpr double kLargestInput = 1e6;
 constexpr double kMaxError = 3e-8;  // of the polynomial form: -150 dB
-
-std::size_t at_index(int i) { return static_cast<std::size_t>(i); }
 
 // With a = t(x0), b = t(x1) the mean of t^k over [a, b] is h_k(a, b) / (k + 1), where
 // h_k = a^k + a^(k-1) b + ... + b^k = a h_(k-1) + b^k. The blossom of the antiderivative, in short.
@@ -62,7 +63,7 @@ Result<ShaperProgram> ShaperProgram::create(const curves::NurbsCurve& curve,
   double area = 0, lost = 0;  // Kahan's sum
   shaper.area_.push_back(0);
   for (int piece = 0; piece < shaper.pieces_; ++piece) {
-    const double width = shaper.breaks_[at_index(piece) + 1] - shaper.breaks_[at_index(piece)];
+    const double width = shaper.breaks_[index_of(piece) + 1] - shaper.breaks_[index_of(piece)];
     shaper.inverse_widths_.push_back(1 / width);
     const auto coefficients = program->coefficients(piece);
     double whole = 0;
@@ -86,16 +87,16 @@ Result<ShaperProgram> ShaperProgram::create(const curves::NurbsCurve& curve,
 ShaperProgram::Input ShaperProgram::locate(double x, int hint) const KNOTWAVE_RT {
   x = conditioned(x);
   const int near = std::clamp(hint, 0, pieces_ - 1);
-  if (breaks_[at_index(near)] <= x && x < breaks_[at_index(near) + 1]) return {x, near};
+  if (breaks_[index_of(near)] <= x && x < breaks_[index_of(near) + 1]) return {x, near};
   const auto after = std::upper_bound(breaks_.begin(), breaks_.end(), x);
   return {x, static_cast<int>(after - breaks_.begin()) - 1};
 }
 
 double ShaperProgram::piece_mean(int piece, double x0, double x1) const KNOTWAVE_RT {
-  const double start = breaks_[at_index(piece)];
-  const double a = (x0 - start) * inverse_widths_[at_index(piece)];
-  const double b = (x1 - start) * inverse_widths_[at_index(piece)];
-  const double* terms = terms_.data() + at_index(piece) * at_index(degree_ + 1);
+  const double start = breaks_[index_of(piece)];
+  const double a = (x0 - start) * inverse_widths_[index_of(piece)];
+  const double b = (x1 - start) * inverse_widths_[index_of(piece)];
+  const double* terms = terms_.data() + index_of(piece) * index_of(degree_ + 1);
   static_assert(curves::kMaxPieceDegree == 7);
   switch (degree_) {
     case 0:
@@ -133,14 +134,14 @@ double ShaperProgram::still_mean(Input a, Input b) const KNOTWAVE_RT {
   double sum = 0;
   const int first_whole = a.piece + 1;
   const int last_whole = b.piece - 1;
-  const double left = breaks_[at_index(first_whole)] - a.x;
+  const double left = breaks_[index_of(first_whole)] - a.x;
   sum += left *
-         (a.piece < 0 ? first_value_ : piece_mean(a.piece, a.x, breaks_[at_index(first_whole)]));
+         (a.piece < 0 ? first_value_ : piece_mean(a.piece, a.x, breaks_[index_of(first_whole)]));
   if (last_whole >= first_whole)
-    sum += area_[at_index(last_whole) + 1] - area_[at_index(first_whole)];
-  const double right = b.x - breaks_[at_index(b.piece)];
+    sum += area_[index_of(last_whole) + 1] - area_[index_of(first_whole)];
+  const double right = b.x - breaks_[index_of(b.piece)];
   sum += right *
-         (b.piece >= pieces_ ? last_value_ : piece_mean(b.piece, breaks_[at_index(b.piece)], b.x));
+         (b.piece >= pieces_ ? last_value_ : piece_mean(b.piece, breaks_[index_of(b.piece)], b.x));
   return sum / (b.x - a.x);
 }
 

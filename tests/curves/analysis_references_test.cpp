@@ -16,6 +16,7 @@
 #include "knotwave/curves/calculus.h"
 
 #include "random_curve.h"
+#include "reference_records.h"
 
 namespace knotwave::test {
 namespace {
@@ -23,12 +24,6 @@ namespace {
 using curves::CurveSpec;
 using curves::NurbsCurve;
 using Numbers = std::vector<double>;
-
-Numbers hex_numbers(std::istream& words) {
-  Numbers numbers;
-  for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
-  return numbers;
-}
 
 // Each gives the largest error in units of what is promised.
 double range_error(const NurbsCurve& curve, const Numbers& exact) {
@@ -87,14 +82,7 @@ TEST(AnalysisReferences, AllFiguresAreAsGoodAsPromised) {
     std::istringstream words(line);
     std::string what;
     words >> what;
-    if (what == "curve") {
-      spec = {};
-      words >> spec.degree >> spec.dim >> spec.periodic;
-    }
-    if (what == "knots") spec.knots = hex_numbers(words);
-    if (what == "points") spec.points = hex_numbers(words);
-    if (what == "weights") spec.weights = hex_numbers(words);
-    if (what == "jumps") spec.jumps = hex_numbers(words);
+    read_curve_record(what, words, spec);
     const auto judge = kJudges.find(what);
     if (judge == kJudges.end()) continue;
     const auto curve = NurbsCurve::create(spec);

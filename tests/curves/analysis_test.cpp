@@ -11,6 +11,7 @@
 
 #include "knotwave/curves/algorithms.h"
 
+#include "example_curve.h"
 #include "random_curve.h"
 #include "support/seed.h"
 
@@ -25,23 +26,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-NurbsCurve made(CurveSpec spec) {
-  spec.name = "example";
-  auto curve = NurbsCurve::create(std::move(spec));
-  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
-  return std::move(*curve);
-}
-
-NurbsCurve scalar(int degree, std::vector<double> points, std::vector<double> knots = {},
-                  std::vector<double> jumps = {}) {
-  CurveSpec spec;
-  spec.degree = degree;
-  spec.points = std::move(points);
-  spec.knots = std::move(knots);
-  spec.jumps = std::move(jumps);
-  return made(std::move(spec));
-}
 
 /// Random, one in four with a jump at one of its inner knots.
 NurbsCurve any_curve(Dice& dice) {
@@ -67,12 +51,6 @@ NurbsCurve any_curve(Dice& dice) {
     spec.weights.insert(spec.weights.begin() + point, dice.between(0.5, 2));
   spec.jumps = {u};
   return made(std::move(spec));
-}
-
-double value_at(const NurbsCurve& curve, double u, Side side, int coordinate) {
-  double out[curves::kMaxDim];
-  curve.evaluate(u, side, out);
-  return out[coordinate];
 }
 
 double ulp_of_points(const NurbsCurve& curve) { return ulp_of(largest_coordinate(curve)); }
@@ -117,15 +95,15 @@ TEST(ValueRange, NoPlaceOfARandomCurveIsOutside) {
     EXPECT_GE(range.low.value, hull.low);
     EXPECT_LE(range.high.value, hull.high);
     for (int i = 0; i < 20; ++i) {
-      const double x = value_at(curve, random_parameter(dice, curve),
-                                dice.one_in(2) ? Side::left : Side::right, c);
+      const double x =
+          at(curve, random_parameter(dice, curve), dice.one_in(2) ? Side::left : Side::right, c);
       ASSERT_GE(x, range.low.value - slack);
       ASSERT_LE(x, range.high.value + slack);
     }
     // And it is taken where it is said to be, from one side or the other.
     for (const auto& end : {range.low, range.high}) {
-      const double off = std::min(std::abs(value_at(curve, end.u, Side::left, c) - end.value),
-                                  std::abs(value_at(curve, end.u, Side::right, c) - end.value));
+      const double off = std::min(std::abs(at(curve, end.u, Side::left, c) - end.value),
+                                  std::abs(at(curve, end.u, Side::right, c) - end.value));
       double slopes[2 * curves::kMaxDim];
       curve.derivatives(end.u, 1, Side::right, slopes);
       const double moved = std::abs(slopes[curve.dim() + c]) * ulp_of_knots(curve);
@@ -169,17 +147,17 @@ TEST(ParametersAt, EveryPlaceOfARandomCurveIsFoundAgain) {
     const NurbsCurve curve = any_curve(dice);
     const int c = dice.below(curve.dim());
     const double u = std::clamp(random_parameter(dice, curve), curve.u_min(), curve.u_max());
-    const double value = value_at(curve, u, Side::right, c);
+    const double value = at(curve, u, Side::right, c);
     const std::vector<double> found = parameters_at(curve, value, c);
     ASSERT_FALSE(found.empty()) << "round " << round;
     ASSERT_TRUE(std::is_sorted(found.begin(), found.end()));
     // Each has the value, but for what 4 ulp of u make of it; or the value is jumped across.
     const double beside = 4 * ulp_of_knots(curve);
     for (const double x : found) {
-      const double left = value_at(curve, x, Side::left, c) - value;
-      const double right = value_at(curve, x, Side::right, c) - value;
-      const double below = value_at(curve, std::max(x - beside, curve.u_min()), Side::left, c);
-      const double above = value_at(curve, std::min(x + beside, curve.u_max()), Side::left, c);
+      const double left = at(curve, x, Side::left, c) - value;
+      const double right = at(curve, x, Side::right, c) - value;
+      const double below = at(curve, std::max(x - beside, curve.u_min()), Side::left, c);
+      const double above = at(curve, std::min(x + beside, curve.u_max()), Side::left, c);
       const double slack = 2 * ulp_of_points(curve) + std::abs(below - above);
       EXPECT_TRUE(left * right <= 0 || (below - value) * (above - value) <= 0 ||
                   std::min(std::abs(left), std::abs(right)) <= slack)
@@ -223,7 +201,7 @@ TEST(SpanHulls, HoldTheirSpans) {
       EXPECT_EQ(hulls[i].u0, i > 0 ? hulls[i - 1].u1 : curve.u_min());
       for (const double share : {0.0, dice.unit(), 1.0}) {
         const double u = std::min(hulls[i].u0 + share * (hulls[i].u1 - hulls[i].u0), hulls[i].u1);
-        const double x = value_at(curve, u, u == hulls[i].u0 ? Side::right : Side::left, c);
+        const double x = at(curve, u, u == hulls[i].u0 ? Side::right : Side::left, c);
         EXPECT_GE(x, hulls[i].low - ulp_of_points(curve));
         EXPECT_LE(x, hulls[i].high + ulp_of_points(curve));
       }

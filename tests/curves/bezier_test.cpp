@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "example_curve.h"
 #include "random_curve.h"
 #include "support/seed.h"
 #include "wide_value.h"
@@ -22,23 +23,10 @@ using curves::PowerSegment;
 using curves::Side;
 using testing::ElementsAre;
 
-NurbsCurve made(CurveSpec spec) {
-  spec.name = "example";
-  auto curve = NurbsCurve::create(std::move(spec));
-  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
-  return std::move(*curve);
-}
-
 BezierSegment segment(double u0, double u1, std::vector<double> points,
                       std::vector<double> weights = {}) {
   weights.resize(points.size(), 1.0);
   return {u0, u1, static_cast<int>(points.size()) - 1, 1, std::move(points), std::move(weights)};
-}
-
-double at(const NurbsCurve& curve, double u, Side side = Side::right) {
-  double out[curves::kMaxDim];
-  curve.evaluate(u, side, out);
-  return out[0];
 }
 
 double worst_of_round_trips(int count) {

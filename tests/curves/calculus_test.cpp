@@ -11,6 +11,7 @@
 
 #include "knotwave/curves/algorithms.h"
 
+#include "example_curve.h"
 #include "random_curve.h"
 #include "support/allocation_count.h"
 #include "support/seed.h"
@@ -23,33 +24,10 @@ using curves::NurbsCurve;
 using curves::Side;
 using testing::ElementsAre;
 
-NurbsCurve made(CurveSpec spec) {
-  spec.name = "example";
-  auto curve = NurbsCurve::create(std::move(spec));
-  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
-  return std::move(*curve);
-}
-
-NurbsCurve scalar(int degree, std::vector<double> points, std::vector<double> knots = {},
-                  std::vector<double> jumps = {}) {
-  CurveSpec spec;
-  spec.degree = degree;
-  spec.points = std::move(points);
-  spec.knots = std::move(knots);
-  spec.jumps = std::move(jumps);
-  return made(std::move(spec));
-}
-
 NurbsCurve plain_curve(Dice& dice, int most_degree) {
   CurveSpec spec = random_spec(dice, 1 + dice.below(most_degree));
   spec.weights.clear();
   return made(std::move(spec));
-}
-
-double value_at(const NurbsCurve& curve, double u, Side side = Side::right) {
-  double out[curves::kMaxDim];
-  curve.evaluate(u, side, out);
-  return out[0];
 }
 
 TEST(Hodograph, OfASegmentIsTheDifferencesOfItsPoints) {
@@ -65,14 +43,14 @@ TEST(Hodograph, ACornerBecomesAJumpBetweenItsSlopes) {
   ASSERT_TRUE(slope) << slope.error().message;
   EXPECT_EQ(slope->degree(), 1);
   EXPECT_THAT(slope->jumps(), ElementsAre(0.5));
-  EXPECT_EQ(value_at(*slope, 0.5, Side::left), 2);
-  EXPECT_EQ(value_at(*slope, 0.5, Side::right), -4);
-  EXPECT_EQ(value_at(*slope, 0.2), 2);
+  EXPECT_EQ(at(*slope, 0.5, Side::left), 2);
+  EXPECT_EQ(at(*slope, 0.5, Side::right), -4);
+  EXPECT_EQ(at(*slope, 0.2), 2);
   const auto smooth = hodograph(scalar(2, {0, 1, 2, 1, 0}, {0, 0, 0, 1, 1, 2, 2, 2}));
   ASSERT_TRUE(smooth);
   EXPECT_THAT(smooth->jumps(), ElementsAre(1));
-  EXPECT_EQ(value_at(*smooth, 1, Side::left), 2);
-  EXPECT_EQ(value_at(*smooth, 1, Side::right), -2);
+  EXPECT_EQ(at(*smooth, 1, Side::left), 2);
+  EXPECT_EQ(at(*smooth, 1, Side::right), -2);
 }
 
 TEST(Hodograph, OfAPeriodicCurveIsPeriodicUnlessItHasCorners) {
@@ -83,12 +61,12 @@ TEST(Hodograph, OfAPeriodicCurveIsPeriodicUnlessItHasCorners) {
   const auto slope = hodograph(made(spec));
   ASSERT_TRUE(slope);
   EXPECT_TRUE(slope->is_periodic());
-  EXPECT_EQ(value_at(*slope, 0.25), 4 * (0 - 1)) << "the third knot: between the points 1 and 0";
+  EXPECT_EQ(at(*slope, 0.25), 4 * (0 - 1)) << "the third knot: between the points 1 and 0";
   spec.degree = 1;
   const auto steps = hodograph(made(spec));
   ASSERT_TRUE(steps) << steps.error().message;
   EXPECT_FALSE(steps->is_periodic());
-  EXPECT_EQ(value_at(*steps, 0.1), 4);
+  EXPECT_EQ(at(*steps, 0.1), 4);
 }
 
 /// A curve that is cut open has its points rounded before their differences are taken: one ulp of
@@ -155,17 +133,17 @@ TEST(Antiderivative, OfAFrequencyIsItsPhase) {
   const auto phase = antiderivative(scalar(1, {100, 300}, {0, 0, 2, 2}), 0.25);
   ASSERT_TRUE(phase);
   EXPECT_EQ(phase->degree(), 2);
-  EXPECT_EQ(value_at(*phase, 0), 0.25);
-  EXPECT_EQ(value_at(*phase, 1), 0.25 + 150);
-  EXPECT_EQ(value_at(*phase, 2), 0.25 + 400);
+  EXPECT_EQ(at(*phase, 0), 0.25);
+  EXPECT_EQ(at(*phase, 1), 0.25 + 150);
+  EXPECT_EQ(at(*phase, 2), 0.25 + 400);
 }
 
 TEST(Antiderivative, AJumpBecomesACorner) {
   const auto area = antiderivative(scalar(1, {0, 1, 3, 4}, {0, 0, 0.5, 0.5, 1, 1}, {0.5}));
   ASSERT_TRUE(area);
   EXPECT_TRUE(area->jumps().empty());
-  EXPECT_EQ(value_at(*area, 0.5), 0.25);
-  EXPECT_EQ(value_at(*area, 1), 0.25 + 1.75);
+  EXPECT_EQ(at(*area, 0.5), 0.25);
+  EXPECT_EQ(at(*area, 1), 0.25 + 1.75);
   double at[2];
   area->derivatives(0.5, 1, Side::left, at);
   EXPECT_EQ(at[1], 1);
@@ -187,8 +165,8 @@ TEST(Antiderivative, IsTheIntegralAndItsSlopeIsTheCurve) {
     const auto part = integral(curve, curve.u_min(), u);
     ASSERT_TRUE(part) << part.error().message;
     const double ulp = ulp_of(largest_coordinate(*area));
-    EXPECT_NEAR(value_at(*area, u, Side::left), start + *part, 4 * ulp) << "round " << round;
-    EXPECT_EQ(value_at(*area, curve.u_min()), start);
+    EXPECT_NEAR(at(*area, u, Side::left), start + *part, 4 * ulp) << "round " << round;
+    EXPECT_EQ(at(*area, curve.u_min()), start);
     EXPECT_EQ(*integral(curve, u, curve.u_min()), -*part);
   }
 }

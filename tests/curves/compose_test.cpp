@@ -10,6 +10,7 @@
 #include "knotwave/curves/combine.h"
 #include "knotwave/curves/reparametrize.h"
 
+#include "example_curve.h"
 #include "random_curve.h"
 #include "support/seed.h"
 
@@ -22,35 +23,6 @@ using curves::Side;
 using testing::ElementsAre;
 using testing::ElementsAreArray;
 using testing::IsEmpty;
-
-NurbsCurve made(CurveSpec spec) {
-  if (spec.name.empty()) spec.name = "example";
-  auto curve = NurbsCurve::create(std::move(spec));
-  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
-  return std::move(*curve);
-}
-
-CurveSpec spec_of(int degree, std::vector<double> points, std::vector<double> knots = {},
-                  std::vector<double> weights = {}) {
-  CurveSpec spec;
-  spec.degree = degree;
-  spec.points = std::move(points);
-  spec.knots = std::move(knots);
-  spec.weights = std::move(weights);
-  return spec;
-}
-
-CurveSpec saw() {
-  CurveSpec spec = spec_of(1, {0, 1, -1, 0.5}, {0, 0, 0.25, 0.25, 1, 1});
-  spec.jumps = {0.25};
-  return spec;
-}
-
-double at(const NurbsCurve& curve, double u, Side side = Side::right) {
-  double out[curves::kMaxDim];
-  curve.evaluate(u, side, out);
-  return out[0];
-}
 
 // s^2 of (t + t^2) / 2 is t^2 / 4 + t^3 / 2 + t^4 / 4.
 TEST(Compose, OfTwoParabolasByHand) {

@@ -12,6 +12,7 @@
 #include "knotwave/curves/nurbs_curve.h"
 
 #include "random_curve.h"
+#include "reference_records.h"
 #include "support/program.h"
 
 namespace knotwave::test {
@@ -20,12 +21,6 @@ namespace {
 using curves::CurveSpec;
 using curves::NurbsCurve;
 using curves::Side;
-
-std::vector<double> hex_numbers(std::istream& words) {
-  std::vector<double> numbers;
-  for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
-  return numbers;
-}
 
 // The error a derivative of order k may have: 1 ulp of its own, and where terms cancel 2^-90 of
 // what they may be: |P| (2p / shortest span)^k with weights 1.
@@ -55,15 +50,8 @@ TEST(CurveReferences, ValuesAndDerivativesAgreeWithExactRationals) {
     std::istringstream words(line);
     std::string what;
     words >> what;
-    if (what == "curve") {
-      spec = {};
-      words >> spec.degree >> spec.dim >> spec.periodic;
-      ++curves_read;
-    }
-    if (what == "knots") spec.knots = hex_numbers(words);
-    if (what == "points") spec.points = hex_numbers(words);
-    if (what == "weights") spec.weights = hex_numbers(words);
-    if (what == "jumps") spec.jumps = hex_numbers(words);
+    read_curve_record(what, words, spec);
+    curves_read += what == "curve";
     if (what != "at") continue;
     std::string u_text, side;
     words >> u_text >> side;

@@ -17,6 +17,7 @@
 #include "knotwave/curves/reparametrize.h"
 
 #include "random_curve.h"
+#include "reference_records.h"
 #include "support/program.h"
 
 namespace knotwave::test {
@@ -25,12 +26,6 @@ namespace {
 using curves::CurveSpec;
 using curves::NurbsCurve;
 using curves::Side;
-
-std::vector<double> hex_numbers(std::istream& words) {
-  std::vector<double> numbers;
-  for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
-  return numbers;
-}
 
 struct Case {
   std::string edit;
@@ -113,14 +108,8 @@ TEST(EditReferences, EveryEditIsWithin4UlpOfExactRationals) {
       words >> edit.edit;
       edit.arguments = hex_numbers(words);
     }
-    if (what == "curve") {
-      CurveSpec& spec = edit.specs.emplace_back();
-      words >> spec.degree >> spec.dim >> spec.periodic;
-    }
-    if (what == "knots") edit.specs.back().knots = hex_numbers(words);
-    if (what == "points") edit.specs.back().points = hex_numbers(words);
-    if (what == "weights") edit.specs.back().weights = hex_numbers(words);
-    if (what == "jumps") edit.specs.back().jumps = hex_numbers(words);
+    if (what == "curve") edit.specs.emplace_back();
+    if (!edit.specs.empty()) read_curve_record(what, words, edit.specs.back());
     if (what != "at") continue;
     if (!result) {
       auto done = carry_out(edit);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "example_curve.h"
 #include "random_curve.h"
 #include "support/allocation_count.h"
 #include "support/seed.h"
@@ -23,23 +24,6 @@ using Wide = __float128;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Extrapolation kModes[] = {Extrapolation::hold, Extrapolation::linear,
                                     Extrapolation::periodic, Extrapolation::mirror};
-
-NurbsCurve made(CurveSpec spec) {
-  spec.name = "example";
-  auto curve = NurbsCurve::create(std::move(spec));
-  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
-  return std::move(*curve);
-}
-
-NurbsCurve scalar(int degree, std::vector<double> points, std::vector<double> knots = {},
-                  std::vector<double> jumps = {}) {
-  CurveSpec spec;
-  spec.degree = degree;
-  spec.points = std::move(points);
-  spec.knots = std::move(knots);
-  spec.jumps = std::move(jumps);
-  return made(std::move(spec));
-}
 
 double at(const NurbsCurve& curve, double u, Extrapolation before, Extrapolation after) {
   double out = 0;

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "example_curve.h"
 #include "random_curve.h"
 #include "support/seed.h"
 
@@ -19,12 +20,6 @@ using curves::NurbsCurve;
 using curves::Spacing;
 using support::test_count;
 using support::test_seed;
-
-double at(const NurbsCurve& curve, double u) {
-  double value = 0;
-  curve.evaluate(u, std::span(&value, 1));
-  return value;
-}
 
 struct Reference {
   int dim, degree, point_count;

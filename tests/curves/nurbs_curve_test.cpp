@@ -9,6 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "knotwave/base/index.h"
+
+#include "example_curve.h"
 #include "random_curve.h"
 #include "support/allocation_count.h"
 #include "support/seed.h"
@@ -21,13 +24,7 @@ using curves::NurbsCurve;
 using curves::Side;
 using testing::ElementsAre;
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
-
-NurbsCurve made(CurveSpec spec) {
-  auto curve = NurbsCurve::create(std::move(spec));
-  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
-  return std::move(*curve);
-}
+using base::index_of;
 
 CurveSpec spec_of(int degree, int dim, std::vector<double> points, std::vector<double> knots,
                   std::vector<double> weights = {}) {

@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "knotwave/base/index.h"
+
 #include "random_curve.h"
 #include "support/seed.h"
 
@@ -19,7 +21,7 @@ using curves::NurbsSurface;
 using curves::Side;
 using curves::SurfaceSpec;
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 SurfaceSpec random_surface_spec(Dice& dice) {
   SurfaceSpec spec;

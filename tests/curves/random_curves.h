@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include "knotwave/base/random.h"
 #include "knotwave/curves/curve_program.h"
 #include "knotwave/curves/nurbs_curve.h"
+
+#include "curves/example_curve.h"
 
 namespace knotwave::curves::testing {
 
@@ -24,11 +24,7 @@ struct Draws {
   bool chance(double p) { return unit() < p; }
 };
 
-inline NurbsCurve made(CurveSpec spec) {
-  auto curve = NurbsCurve::create(std::move(spec));
-  if (!curve) ADD_FAILURE() << curve.error().message;
-  return std::move(*curve);
-}
+using test::made;
 
 inline NurbsCurve line(std::vector<double> points, int degree) {
   CurveSpec spec;

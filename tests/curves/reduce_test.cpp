@@ -10,6 +10,7 @@
 
 #include "knotwave/curves/algorithms.h"
 
+#include "example_curve.h"
 #include "random_curve.h"
 #include "support/seed.h"
 #include "wide_value.h"
@@ -23,21 +24,6 @@ using curves::ReducedCurve;
 using curves::Side;
 using testing::ElementsAre;
 using testing::ElementsAreArray;
-
-NurbsCurve made(CurveSpec spec) {
-  spec.name = "example";
-  auto curve = NurbsCurve::create(std::move(spec));
-  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
-  return std::move(*curve);
-}
-
-CurveSpec spec_of(int degree, std::vector<double> points, std::vector<double> knots = {}) {
-  CurveSpec spec;
-  spec.degree = degree;
-  spec.points = std::move(points);
-  spec.knots = std::move(knots);
-  return spec;
-}
 
 // Distance of two curves, in output units: the largest found at `count` places.
 double found_distance(Dice& dice, const NurbsCurve& a, const NurbsCurve& b, int count) {

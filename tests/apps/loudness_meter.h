@@ -54,6 +54,13 @@ class LoudnessMeter {
     m.frames += frames;
   }
 
+  /// As new: what follows is measured by itself.
+  void restart() {
+    ebur128_destroy(&state_);
+    state_ = ebur128_init(2, kMeterRateHz, EBUR128_MODE_I);
+    std::fill(std::begin(tail_), std::end(tail_), 0.0f);
+  }
+
   void finish(Measure& m) {
     ebur128_loudness_global(state_, &m.loudness_lufs);
     for (const float x : tail_) m.end_peak = std::max(m.end_peak, double(std::abs(x)));

@@ -3,7 +3,6 @@
 // loud by ITU-R BS.1770, and two hands full of loud notes stay below full scale without a limiter.
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -12,16 +11,16 @@
 
 #include <gtest/gtest.h>
 
-#include "knotwave/base/file.h"
-#include "knotwave/io/midi_file.h"
-
 #include "apps/loudness_meter.h"
+#include "apps/notes_file.h"
 #include "support/program.h"
 
 namespace {
 
 using knotwave::render::Measure;
 using knotwave::render::measure;
+using knotwave::render::Note;
+using knotwave::render::notes_file;
 
 // Eight keys at once leave this much room: what rings (plucked strings, keys, bells) has peaks 18
 // dB above its loudness, and no limiter catches them.
@@ -41,10 +40,14 @@ constexpr auto kPlaced = std::to_array<Placed>({
     {"arc", 60},
     {"bass", 33},
     {"bell", 72},
+    {"belltree", 84, Kind::drum},
     {"block", 76, Kind::drum},
     {"brass", 55},
     {"clap", 39, Kind::drum},
-    {"cymbal", 49, Kind::drum},
+    {"conga", 64, Kind::drum},
+    {"cowbell", 68, Kind::drum},
+    {"cuica", 72, Kind::drum},
+    {"cymbal", 60, Kind::drum},
     {"drawn-lead", 64},
     {"drive", 45},
     {"first-light-1-lines", 60, Kind::first_light},
@@ -52,29 +55,31 @@ constexpr auto kPlaced = std::to_array<Placed>({
     {"first-light-3-weight", 60, Kind::first_light},
     {"first-light-4-surface", 60, Kind::first_light},
     {"flute", 72},
+    {"guiro", 60, Kind::drum},
     {"hat-closed", 42, Kind::drum},
     {"hat-open", 46, Kind::drum},
+    {"jingle", 72, Kind::drum},
     {"keys", 60},
     {"kick", 36, Kind::drum},
     {"leaning-bell", 67},
     {"mono-lead", 64},
     {"morph-pad", 55},
+    {"muted-drum", 62, Kind::drum},
     {"organ", 55},
     {"pluck", 55},
     {"reed", 60},
+    {"ride", 60, Kind::drum},
+    {"scratch", 60, Kind::drum},
     {"shaker", 54, Kind::drum},
     {"snare", 38, Kind::drum},
     {"strings", 55},
     {"tom", 45, Kind::drum},
+    {"vibraslap", 60, Kind::drum},
     {"voice", 55},
+    {"whistle", 60, Kind::drum},
     {"wind", 60},
+    {"zap", 60, Kind::drum},
 });
-
-struct Note {
-  double beat, beats;
-  int key;
-  int velocity;
-};
 
 /// At 120 beats a minute. A phrase up and down the chord, then the chord itself, held.
 std::vector<Note> phrase(int root) {
@@ -97,32 +102,10 @@ std::vector<Note> beats(int key) {
   return notes;
 }
 
-std::string written(const knotwave::support::ScratchFolder& folder, std::vector<Note> notes) {
-  constexpr double kTicks = 480;
-  knotwave::io::Song song;
-  song.track_count = 1;
-  for (const Note& note : notes) {
-    const auto key = static_cast<std::uint8_t>(note.key);
-    const auto velocity = static_cast<std::uint8_t>(note.velocity);
-    const auto on = static_cast<std::uint64_t>(note.beat * kTicks);
-    const auto off = static_cast<std::uint64_t>((note.beat + note.beats) * kTicks);
-    song.events.push_back({on, 0, {0x90, key, velocity}, 0, 0});
-    song.events.push_back({off, 0, {0x80, key, 64}, 0, 0});
-    song.length_ticks = std::max(song.length_ticks, off);
-  }
-  std::stable_sort(song.events.begin(), song.events.end(),
-                   [](const auto& a, const auto& b) { return a.tick < b.tick; });
-  const auto bytes = knotwave::io::write_midi(song);
-  const std::string path = folder.file("phrase.mid");
-  EXPECT_TRUE(knotwave::base::write_file(
-      path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
-  return path;
-}
-
-Measure played(std::string_view patch, std::vector<Note> notes) {
+Measure played(std::string_view patch, const std::vector<Note>& notes) {
   const knotwave::support::ScratchFolder folder;
   const std::string file = KNOTWAVE_SOURCE_DIR "/examples/patches/" + std::string(patch) + ".toml";
-  const Measure m = measure(file, written(folder, std::move(notes)));
+  const Measure m = measure(file, notes_file(folder, notes));
   EXPECT_EQ(m.exit_code, 0) << patch << "\n" << m.err;
   EXPECT_TRUE(m.finite) << patch;
   return m;

@@ -7,7 +7,7 @@
 
 #include "knotwave/base/file.h"
 #include "knotwave/base/suggest.h"
-#include "knotwave/engine/patch.h"
+#include "knotwave/engine/bank.h"
 
 namespace knotwave::curve_app {
 

@@ -4,7 +4,7 @@
 
 #include "knotwave/base/file.h"
 #include "knotwave/curves/plot.h"
-#include "knotwave/engine/patch.h"
+#include "knotwave/engine/bank.h"
 
 #include "command_line/places.h"
 #include "curve_input.h"

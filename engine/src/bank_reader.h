@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "knotwave/engine/bank.h"
+
 #include "patch_reader.h"
 
 namespace knotwave::engine {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Patches and banks from text and files.
 #include "knotwave/base/file.h"
-#include "knotwave/engine/patch.h"
+#include "knotwave/engine/bank.h"
 
 #include "bank_reader.h"
 #include "patch_reader.h"

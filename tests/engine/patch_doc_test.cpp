@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "knotwave/engine/patch.h"
+#include "knotwave/engine/bank.h"
 
 namespace knotwave::engine {
 namespace {

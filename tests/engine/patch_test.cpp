@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "knotwave/engine/bank.h"
+
 #include "support/broken.h"
 
 namespace knotwave::engine {

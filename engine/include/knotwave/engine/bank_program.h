@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "knotwave/base/result.h"
-#include "knotwave/engine/patch.h"
+#include "knotwave/engine/bank.h"
 
 namespace knotwave::engine {
 

@@ -6,6 +6,8 @@
 
 #include "knotwave/io/sound_file.h"
 
+#include "bank_input/patch_warnings.h"
+
 namespace knotwave::bank_input {
 namespace {
 
@@ -71,6 +73,9 @@ Result<BankInput> read(const std::string& path) {
   BankInput input;
   auto spec = engine::read_bank(path);
   if (!spec) return std::move(spec).error();
+  for (const engine::PatchSpec& patch : spec->patches) {
+    for (auto& warning : patch_warnings(patch)) input.warnings.push_back(std::move(warning));
+  }
   const auto waves = read_waves(*spec, input.warnings);
   if (!waves) return waves.error();
   for (const engine::WaveCycles& wave : *waves) input.sounds.push_back(wave.file);

@@ -13,7 +13,7 @@ struct BankInput {
   engine::BankSpec spec;
   std::unique_ptr<const engine::BankProgram> program;
   std::vector<std::string> sounds;    ///< the sound files that were read
-  std::vector<std::string> warnings;  ///< each names its file
+  std::vector<std::string> warnings;  ///< of the patches, then of the sounds; each names its file
 };
 
 /// Errors: those of read_bank(), of the sound files (at their place in the patch), of

@@ -16,7 +16,7 @@ std::string count_of(const curves::CurveSet& set) {
   return count_of(set.curves.size(), "curve") + ", " + count_of(set.surfaces.size(), "surface");
 }
 
-/// What a file holds.
+/// What a file holds; warnings go to standard error.
 Result<std::string> checked(const std::string& path) {
   const auto file = read_known_file(path);
   if (!file) return file.error();
@@ -28,6 +28,7 @@ Result<std::string> checked(const std::string& path) {
   // Compiled as for playing: what is ok here can be rendered.
   const auto bank = bank_input::read(path);
   if (!bank) return bank.error();
+  for (const auto& warning : bank->warnings) std::fprintf(stderr, "%s\n", warning.c_str());
   const engine::BankSpec& spec = bank->spec;
   if (file->kind == curves::FileKind::bank) {
     return "bank, " + std::to_string(spec.patches.size()) + " patches, " +

@@ -10,7 +10,7 @@
 
 namespace knotwave::curve_app {
 
-/// One line a good file; the faults of the others go to standard error. Sets `failed`.
+/// One line a good file; warnings and the faults of the others go to standard error. Sets `failed`.
 std::string check_text(const CurveOptions& options, bool& failed);
 Result<std::string> info_text(const CurveOptions& options);
 Result<std::string> eval_text(const CurveOptions& options);

@@ -5,7 +5,6 @@
 #include "bank_input/bank_input.h"
 #include "demo.h"
 #include "event_feed.h"
-#include "patch_warnings.h"
 #include "render_job.h"
 
 namespace knotwave::render {
@@ -25,9 +24,6 @@ Result<void> read_bank(const std::string& path, RenderInput& input) {
   auto bank = bank_input::read(path);
   if (!bank) return std::move(bank).error();
   input.bank = std::move(bank->program);
-  for (const auto& patch : bank->spec.patches) {
-    for (auto& warning : patch_warnings(patch)) input.warnings.push_back(std::move(warning));
-  }
   for (auto& warning : bank->warnings) input.warnings.push_back(std::move(warning));
   for (const auto& file : bank->spec.files)
     input.files.push_back({"a file the patch names,", file});

@@ -83,8 +83,13 @@ TEST_F(RenderProgram, AMapThatMovesACurveNothingPlaysIsTold) {
   const std::string map =
       "[curves.idle]\ndegree = 1\npoints = [0, 1]\n[[maps]]\nfrom = \"mod\"\nlow = 0\nhigh = 1\n";
   write("idle.toml", kSmallPatch + map + "to = \"curve.idle.point.0\"\n");
-  EXPECT_EQ(run({"idle.toml", "small.mid", "--check"}).err,
-            "idle.toml:22:6: warning: this map moves 'idle', which nothing plays\n");
+  const std::string told = "idle.toml:22:6: warning: this map moves 'idle', which nothing plays\n";
+  EXPECT_EQ(run({"idle.toml", "small.mid", "--check"}).err, told);
+  support::ProgramOptions options;
+  options.folder = folder_.path();
+  const auto checked = support::run_program({"knotwave-curve", "check", "idle.toml"}, options);
+  EXPECT_EQ(checked.exit_code, 0);
+  EXPECT_EQ(checked.err, told);
   write("busy.toml", kSmallPatch + map + "to = \"curve.gate.point.1\"\n");
   const auto busy = run({"busy.toml", "small.mid", "--check"});
   EXPECT_EQ(busy.exit_code, 0);

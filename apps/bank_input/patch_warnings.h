@@ -6,9 +6,9 @@
 
 #include "knotwave/engine/patch.h"
 
-namespace knotwave::render {
+namespace knotwave::bank_input {
 
 /// `file.toml:30:1: warning: ...`, one for each map that moves a curve which nothing plays.
 std::vector<std::string> patch_warnings(const engine::PatchSpec& patch);
 
-}  // namespace knotwave::render
+}  // namespace knotwave::bank_input

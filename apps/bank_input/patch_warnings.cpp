@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "patch_warnings.h"
+#include "bank_input/patch_warnings.h"
 
 #include <algorithm>
 
-namespace knotwave::render {
+namespace knotwave::bank_input {
 namespace {
 
 bool is_played(const engine::PatchSpec& patch, const std::string& curve) {
@@ -36,4 +36,4 @@ std::vector<std::string> patch_warnings(const engine::PatchSpec& patch) {
   return warnings;
 }
 
-}  // namespace knotwave::render
+}  // namespace knotwave::bank_input

@@ -8,8 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "knotwave/base/file.h"
+#include "knotwave/base/random.h"
 
+#include "sha256_blocks.h"
 #include "support/program.h"
+#include "support/seed.h"
 
 namespace knotwave::base {
 namespace {
@@ -52,6 +55,18 @@ TEST(Sha256, AgreesWithTheSystemsToolForEveryLengthAroundABlock) {
     const support::ProgramRun run = support::run_program({"/usr/bin/sha256sum", path});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run.out.substr(0, 64), digest(text)) << length;
+  }
+}
+
+TEST(Sha256, TheProcessorsInstructionsGiveWhatPlainCodeGives) {
+  std::vector<std::uint8_t> data(64 * 100);
+  const RandomStream stream{.seed = support::test_seed()};
+  for (std::size_t i = 0; i < data.size(); ++i) data[i] = static_cast<std::uint8_t>(stream.bits(i));
+  for (const std::size_t blocks : {0u, 1u, 2u, 7u, 100u}) {
+    Sha256State state{1, 2, 3, 4, 5, 6, 7, 8}, portable = state;
+    sha256_blocks(state, data.data(), blocks);
+    sha256_blocks_portable(portable, data.data(), blocks);
+    EXPECT_EQ(state, portable) << blocks;
   }
 }
 

@@ -35,7 +35,13 @@ struct RandomStream {
   std::uint32_t purpose = 0;  ///< one constant per use; see below
 
   /// Number `index` of the stream, uniform over 64 bits. [any]
-  std::uint64_t bits(std::uint64_t index) const KNOTWAVE_RT;
+  constexpr std::uint64_t bits(std::uint64_t index) const KNOTWAVE_RT {
+    const auto low = [](std::uint64_t x) { return static_cast<std::uint32_t>(x); };
+    const auto high = [](std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); };
+    const auto block =
+        philox4x32({low(index), high(index), voice, purpose}, {low(seed), high(seed)});
+    return block[0] | std::uint64_t{block[1]} << 32;
+  }
   /// Uniform in [0, 1), 53 bits. [any]
   double unit(std::uint64_t index) const KNOTWAVE_RT;
   /// Uniform in [-1, 1), 54 bits. [any]

@@ -20,7 +20,6 @@ class Sha256 {
   std::string finish_hex();
 
  private:
-  void block(const std::uint8_t* data);
   std::array<std::uint32_t, 8> state_;
   std::array<std::uint8_t, 64> buffer_;
   std::uint64_t size_bytes_ = 0;

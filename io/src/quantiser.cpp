@@ -20,17 +20,21 @@ double triangular(std::uint64_t bits) {
 
 void Quantiser::quantise(std::span<const float> interleaved, std::span<std::int32_t> out) {
   const double scale = static_cast<double>(std::int64_t{1} << (bits_ - 1));
-  const auto channels = static_cast<std::uint64_t>(channels_);
-  for (std::size_t i = 0; i < interleaved.size(); ++i, ++next_sample_) {
+  base::RandomStream stream{.seed = seed_, .voice = channel_, .purpose = base::kRandomDither};
+  for (std::size_t i = 0; i < interleaved.size(); ++i) {
     const double x = static_cast<double>(interleaved[i]);
     if (std::abs(x) > 1) ++clipped_;
-    const base::RandomStream stream{.seed = seed_,
-                                    .voice = static_cast<std::uint32_t>(next_sample_ % channels),
-                                    .purpose = base::kRandomDither};
-    const double dithered = x * scale + triangular(stream.bits(next_sample_ / channels));
-    const double rounded = std::clamp(std::floor(dithered + 0.5), -scale, scale - 1);
-    out[i] = static_cast<std::int32_t>(rounded) * (1 << (32 - bits_));
+    const double dithered = x * scale + triangular(stream.bits(frame_));
+    const double held = std::clamp(dithered + 0.5, -scale, scale - 1);
+    auto rounded = static_cast<std::int32_t>(held);  // towards 0
+    if (held < rounded) --rounded;
+    out[i] = rounded * (1 << (32 - bits_));
+    if (++stream.voice == channels_) {
+      stream.voice = 0;
+      ++frame_;
+    }
   }
+  channel_ = stream.voice;
 }
 
 }  // namespace knotwave::io

@@ -13,7 +13,7 @@ namespace knotwave::io {
 class Quantiser {
  public:
   Quantiser(int bits, int channels, std::uint64_t seed)
-      : bits_(bits), channels_(channels), seed_(seed) {}
+      : bits_(bits), channels_(static_cast<std::uint32_t>(channels)), seed_(seed) {}
 
   /// Integers in the upper `bits` of 32, as libsndfile takes them. 1 is full scale: it becomes the
   /// largest integer, and so does what is beyond, counted.
@@ -23,9 +23,10 @@ class Quantiser {
 
  private:
   int bits_;
-  int channels_;
+  std::uint32_t channels_;
   std::uint64_t seed_;
-  std::uint64_t next_sample_ = 0;  ///< interleaved
+  std::uint64_t frame_ = 0;  ///< of the next sample
+  std::uint32_t channel_ = 0;
   std::int64_t clipped_ = 0;
 };
 

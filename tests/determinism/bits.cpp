@@ -24,8 +24,13 @@ void print(const std::string& name, std::span<const float> numbers) {
 
 }  // namespace knotwave::bits
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: knotwave_bits EXAMPLES\n", stderr);
+    return 2;
+  }
   knotwave::bits::base();
   knotwave::bits::curves();
   knotwave::bits::dsp();
+  knotwave::bits::engine(argv[1]);
 }

@@ -19,5 +19,7 @@ inline double spread(double low, double high, int index, int count) {
 void base();
 void curves();
 void dsp();
+/// `examples`: the folder of that name.
+void engine(const std::string& examples);
 
 }  // namespace knotwave::bits

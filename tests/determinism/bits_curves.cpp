@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "knotwave/curves/compile.h"
 #include "knotwave/curves/nurbs_curve.h"
 
 #include "bits.h"
@@ -33,9 +34,32 @@ void print_curve(const char* name, const curves::CurveSpec& spec) {
   print(name, values);
 }
 
+/// A handle curve (x = time) as a function: inversion, fit and grid.
+void print_function(const char* name, const curves::CurveSpec& spec) {
+  const auto program = curves::compile_function(make(spec));
+  if (!program) {
+    std::fprintf(stderr, "%s\n", program.error().to_string().c_str());
+    std::exit(1);
+  }
+  std::vector<float> values(kCount);
+  program->evaluate_grid({program->u_min(), program->u_max(), kCount - 1}, 0, values);
+  print(name, values);
+}
+
+void print_functions() {
+  print_function("function_ease", {.degree = 3, .dim = 2, .points = {0, 0, 1, 0, 0, 1, 1, 1}});
+  print_function("function_rational", {.degree = 2,
+                                       .dim = 2,
+                                       .points = {0, 0, 0.2, 1.5, 0.7, -1, 1, 1},
+                                       .weights = {1, 3, 0.3, 1}});
+  print_function("degree_15",
+                 {.degree = 15, .points = {0, 1, -1, 2, 0, 3, 1, -2, 0.5, 0.1, 1, 2, -1, 4, 0, 1}});
+}
+
 }  // namespace
 
 void curves() {
+  print_functions();
   print_curve("curve_decay60", {.degree = 4,
                                 .points = {1, 0.15962, 0.030761, 0.0058833, 0.001},
                                 .weights = {0.033544, 0.068924, 0.15018, 0.35327, 1}});

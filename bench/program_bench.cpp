@@ -8,6 +8,7 @@
 
 #include "knotwave/base/random.h"
 #include "knotwave/curves/compile.h"
+#include "knotwave/curves/moving_curve.h"
 
 namespace knotwave::curves {
 namespace {
@@ -133,6 +134,31 @@ void compile_easing(benchmark::State& state, double x1, double y1, double x2, do
   state.counters["pieces"] = pieces;
 }
 
+/// Time inversion with all points moving: one span from (0, 0) to (1, 1).
+void moving_points(benchmark::State& state, int degree) {
+  CurveSpec spec;
+  spec.name = "easing";
+  spec.degree = degree;
+  spec.dim = 2;
+  for (int i = 0; i <= degree; ++i) {
+    spec.points.insert(spec.points.end(), 2, double(i) / degree);
+  }
+  const MovingCurve moving = *MovingCurve::create(*NurbsCurve::create(spec));
+  std::vector<double> times(kBlock), out(kBlock);
+  std::vector<std::vector<double>> rows(spec.points.size(), std::vector<double>(kBlock));
+  std::vector<const double*> points;
+  for (std::size_t i = 0; i < kBlock; ++i) times[i] = (double(i) + 0.5) / kBlock;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    for (std::size_t i = 0; i < kBlock; ++i) rows[k][i] = spec.points[k] + 0.001 * double(i % 7);
+    points.push_back(rows[k].data());
+  }
+  for (auto _ : state) {
+    moving.render(times, points, out);
+    benchmark::DoNotOptimize(out.data());
+  }
+  count_samples(state);
+}
+
 void compile_exact(benchmark::State& state, int points) {
   const NurbsCurve curve = wavy(3, points, true);
   for (auto _ : state) benchmark::DoNotOptimize(compile_function(curve)->piece_count());
@@ -156,6 +182,8 @@ BENCHMARK_CAPTURE(array, in_order_with_jitter_64_spans, 64, 0.001);
 BENCHMARK_CAPTURE(array, random_u_64_spans, 64, 1.0);
 BENCHMARK_CAPTURE(with_controls, one_weight, 1);
 BENCHMARK_CAPTURE(with_controls, four_weights, 4);
+BENCHMARK_CAPTURE(moving_points, cubic, 3);
+BENCHMARK_CAPTURE(moving_points, degree_7, 7);
 BENCHMARK_CAPTURE(compile_exact, cubic_64_points, 64);
 BENCHMARK_CAPTURE(compile_easing, ease, .25, .1, .25, 1);
 BENCHMARK_CAPTURE(compile_easing, vertical_start, 0, 1, 0, 1);

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Writes tests/golden/curves/analysis.txt: curves with their ranges, roots, variation, nearest
-places and areas, right to 30 digits and then rounded to the nearest double.
+places, areas and lengths, right to 30 digits and then rounded to the nearest double.
 
 An oracle from outside: each span becomes a fraction of polynomials by the Cox-de Boor recursion in
-rationals (exact_curves.py); roots are those of mpmath's polyroots at 40 digits. Needs mpmath.
+rationals (exact_curves.py); roots are those of mpmath's polyroots at 40 digits, areas under weights
+and lengths those of its tanh-sinh quadrature. Needs mpmath.
 
     tools/make_analysis_references.py            writes the file
     tools/make_analysis_references.py --check    exit 1 if the file is not what would be written
@@ -15,7 +16,8 @@ Format, one record a line, numbers as hexadecimal floats:
     variation X                    of coordinate 0
     roots VALUE U...               where coordinate 0 takes VALUE
     nearest POINT... DISTANCE U
-    area A B X                     of coordinate 0, without weights
+    area A B X                     of coordinate 0
+    length A B X                   of the path; of the graph (u, C(u)) for one coordinate
 """
 import itertools
 import pathlib
@@ -144,8 +146,20 @@ def sum_over(spans, a, b, amount):
 
 
 def area(span, low, high):
+    if any(span.bottom[1:]):
+        return mpmath.quad(span.at, [low, high])
     powers = [Fraction(0)] + [c / span.bottom[0] / (k + 1) for k, c in enumerate(span.tops[0])]
     return value(powers, high) - value(powers, low)
+
+
+def length(span, low, high):
+    tops = [span.slope_top(c) for c in range(len(span.tops))]
+
+    def speed(h):
+        square = sum(value(top, h) ** 2 for top in tops) / value(span.bottom, h) ** 4
+        return mpmath.sqrt(square + 1 if len(tops) == 1 else square)
+
+    return mpmath.quad(speed, mpmath.linspace(low, high, 9))
 
 
 def some_curves():
@@ -188,8 +202,9 @@ def text():
         for _ in range(3):
             point = [3 * rng.random() - 1.5 for _ in range(curve["dim"])]
             lines.append("nearest " + hexes(point + list(nearest(spans, point))))
-        for a, b in [] if curve["weights"] else [(0, 1), tuple(sorted([rng.random(), rng.random()]))]:
+        for a, b in [(0, 1), tuple(sorted([rng.random(), rng.random()]))]:
             lines.append("area " + hexes([a, b, sum_over(spans, a, b, area)]))
+            lines.append("length " + hexes([a, b, sum_over(spans, a, b, length)]))
     return "\n".join(lines) + "\n"
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes dsp/src/gauss_legendre_16.inc and tests/dsp/fourier_reference.inc (needs mpmath).
+"""Writes base/include/knotwave/base/gauss_legendre.h and tests/dsp/fourier_reference.inc (needs mpmath).
 
 The reference integrates B-spline curves piece by piece with 60 digits: Cox-de Boor on polynomials
 with exact rationals, then integration by parts in mpmath. Run from the repository's root.
@@ -11,6 +11,25 @@ import random
 from mpmath import mp, mpf, mpc, findroot, legendre, diff, exp, pi
 
 mp.dps = 60
+GAUSS_HEADER = '''\
+// SPDX-License-Identifier: MIT
+// Gauss-Legendre quadrature. Written by tools/make_fourier_tables.py; do not edit.
+#pragma once
+
+namespace knotwave::base {
+
+/// A node above the middle of [0, 1], and its weight; the node as far below has the same.
+struct GaussNode {
+  double distance = 0;  ///< from 1/2
+  double weight = 0;
+};
+
+/// 16 nodes: polynomials up to degree 31 are integrated exactly.
+inline constexpr GaussNode kGaussLegendre16[8] = {
+%s};
+
+}  // namespace knotwave::base
+'''
 HARMONICS = [0, 1, 2, 3, 5, 8, 13, 32, 64, 128, 300, 512, 1024, 2048]
 
 
@@ -21,7 +40,7 @@ def gauss_lines(count):
         x = findroot(lambda z: legendre(count, z), (near - mpf("1e-3"), near + mpf("1e-3")), solver="anderson")
         slope = diff(lambda z: legendre(count, z), x)
         weight = 2 / ((1 - x * x) * slope * slope)
-        lines.append("{%s, %s}," % (mp.nstr(x / 2, 20), mp.nstr(weight / 2, 20)))
+        lines.append("    {%s, %s}" % (mp.nstr(x / 2, 20), mp.nstr(weight / 2, 20)))
     return lines
 
 
@@ -98,9 +117,8 @@ def cases():
 
 
 def main():
-    with open("dsp/src/gauss_legendre_16.inc", "w") as file:
-        file.write("// SPDX-License-Identifier: MIT\n// Written by tools/make_fourier_tables.py.\n")
-        file.write("\n".join(gauss_lines(16)) + "\n")
+    with open("base/include/knotwave/base/gauss_legendre.h", "w") as file:
+        file.write(GAUSS_HEADER % ",\n".join(gauss_lines(16)))
     with open("tests/dsp/fourier_reference.inc", "w") as file:
         file.write("// SPDX-License-Identifier: MIT\n// Written by tools/make_fourier_tables.py: name, degree, periodic, points, knots, {n, re, im}.\n")
         for name, degree, periodic, points, knots in cases():

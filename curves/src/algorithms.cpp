@@ -9,6 +9,7 @@
 
 #include "homogeneous.h"
 #include "span_basis.h"
+#include "spec_checks.h"
 
 namespace knotwave::curves {
 namespace {
@@ -20,10 +21,6 @@ Error outside(const NurbsCurve& curve, double u, const std::string& rule) {
   return fail(ErrorCode::parameter_out_of_range,
               "curve '" + curve.name() + "': u = " + number_text(u) + " is " + rule + " " +
                   number_text(curve.u_min()) + ".." + number_text(curve.u_max()));
-}
-
-bool inside(const NurbsCurve& curve, double u) {
-  return u >= curve.u_min() && u <= curve.u_max();  // false for NaN
 }
 
 // What stays when points and knots change.
@@ -52,7 +49,7 @@ Error too_often(const NurbsCurve& curve, double u, int times) {
 }
 
 Result<void> check_insertion(const NurbsCurve& curve, double u, int times) {
-  if (!inside(curve, u)) return outside(curve, u, "outside");
+  if (auto good = check_parameter(curve, u); !good) return good;
   if (curve.is_periodic() && u == curve.u_max()) u = curve.u_min();
   const bool at_end = !curve.is_periodic() && (u == curve.u_min() || u == curve.u_max());
   const int multiplicity = multiplicity_of(curve, u);
@@ -89,7 +86,7 @@ Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times) {
 Result<NurbsCurve> refine(const NurbsCurve& curve, std::span<const double> knots) {
   std::vector<double> sorted(knots.begin(), knots.end());
   for (double& u : sorted) {
-    if (!inside(curve, u)) return outside(curve, u, "outside");
+    if (auto good = check_parameter(curve, u); !good) return good.error();
     if (curve.is_periodic() && u == curve.u_max()) u = curve.u_min();
   }
   std::sort(sorted.begin(), sorted.end());
@@ -104,8 +101,9 @@ Result<NurbsCurve> refine(const NurbsCurve& curve, std::span<const double> knots
 }
 
 Result<NurbsCurve> sub_curve(const NurbsCurve& curve, double u_a, double u_b) {
-  if (!inside(curve, u_a)) return outside(curve, u_a, "outside");
-  if (!inside(curve, u_b)) return outside(curve, u_b, "outside");
+  for (const double u : {u_a, u_b}) {
+    if (auto good = check_parameter(curve, u); !good) return good.error();
+  }
   if (!(u_a < u_b)) {
     return fail(ErrorCode::empty_domain, "curve '" + curve.name() +
                                              "': from u = " + number_text(u_a) + " to " +

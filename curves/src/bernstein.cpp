@@ -39,19 +39,6 @@ Signs signs_of(const Search& search, const Bernstein& part) {
   return signs;
 }
 
-// de Casteljau at 1/2: `part` becomes its left half, the right one is returned.
-Bernstein halve(Bernstein& part) {
-  Bernstein right = part;
-  for (std::size_t level = 1; level < part.size(); ++level) {
-    for (std::size_t r = 0; r + level < part.size(); ++r) {
-      const DoubleDouble sum = right[r] + right[r + 1];
-      right[r] = DoubleDouble(0.5 * sum.hi, 0.5 * sum.lo);
-    }
-    part[level] = right[0];
-  }
-  return right;
-}
-
 double bisect(const Search& search, double low, double high, int sign_below) {
   constexpr int kSteps = 54;
   for (int i = 0; i < kSteps; ++i) {
@@ -125,6 +112,39 @@ Bernstein derivative(const Bernstein& a) {
     slopes.push_back((a[i + 1] - a[i]) * DoubleDouble(static_cast<double>(a.size() - 1)));
   }
   return slopes;
+}
+
+Bernstein halve(Bernstein& a) {
+  Bernstein right = a;
+  for (std::size_t level = 1; level < a.size(); ++level) {
+    for (std::size_t r = 0; r + level < a.size(); ++r) {
+      const DoubleDouble sum = right[r] + right[r + 1];
+      right[r] = DoubleDouble(0.5 * sum.hi, 0.5 * sum.lo);
+    }
+    a[level] = right[0];
+  }
+  return right;
+}
+
+std::vector<DoubleDouble> centered_powers(Bernstein a) {
+  // a_k = C(n, k) 2^-k D, where D, the k-th differences at 1/2, is sum C(n-k, j) d_j 2^-(n-k).
+  const int n = degree_of(a);
+  double scale = 1;
+  for (int k = 0; k < n; ++k) scale *= 0.5;
+  std::vector<DoubleDouble> powers;
+  double choose_k = 1;  // C(n, k)
+  for (int k = 0; k <= n; ++k) {
+    DoubleDouble sum = 0.0;
+    double choose_j = 1;  // C(n - k, j)
+    for (int j = 0; j <= n - k; ++j) {
+      sum += a[index_of(j)] * DoubleDouble(choose_j);
+      choose_j = choose_j * (n - k - j) / (j + 1);
+      if (j < n - k) a[index_of(j)] = a[index_of(j + 1)] - a[index_of(j)];
+    }
+    powers.push_back(sum * DoubleDouble(choose_k * scale));
+    choose_k = choose_k * (n - k) / (k + 1);
+  }
+  return powers;
 }
 
 Bernstein part_of(Bernstein a, DoubleDouble t0, DoubleDouble t1) {

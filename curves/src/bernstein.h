@@ -17,6 +17,10 @@ Bernstein operator*(const Bernstein& a, const Bernstein& b);
 Bernstein operator+(const Bernstein& a, const Bernstein& b);
 Bernstein operator-(const Bernstein& a, const Bernstein& b);
 Bernstein derivative(const Bernstein& a);
+/// de Casteljau at 1/2: `a` becomes its left half, over [0, 1] again; the right one is returned.
+Bernstein halve(Bernstein& a);
+/// Powers of 2 t - 1, the distance from the middle in half widths: [degree+1], power 0 first.
+std::vector<DoubleDouble> centered_powers(Bernstein a);
 /// The same over [t0, t1], 0 <= t0 < t1 <= 1.
 Bernstein part_of(Bernstein a, DoubleDouble t0, DoubleDouble t1);
 

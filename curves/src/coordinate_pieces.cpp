@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "coordinate_pieces.h"
 
+#include <algorithm>
+
 #include "curve_distance.h"
 
 namespace knotwave::curves {
@@ -24,6 +26,19 @@ std::vector<CoordinatePiece> coordinate_pieces(const NurbsCurve& curve, int coor
     pieces.push_back(std::move(piece));
   }
   return pieces;
+}
+
+std::optional<CoordinatePiece> clipped(const CoordinatePiece& piece, double low, double high) {
+  low = std::max(low, piece.u0);
+  high = std::min(high, piece.u1);
+  if (!(low < high)) return std::nullopt;
+  if (low == piece.u0 && high == piece.u1) return piece;
+  const DoubleDouble width = DoubleDouble::difference(piece.u1, piece.u0);
+  const DoubleDouble t0 = DoubleDouble::difference(low, piece.u0) / width;
+  const DoubleDouble t1 = DoubleDouble::difference(high, piece.u0) / width;
+  if (!(t1.hi > 0)) return std::nullopt;
+  return CoordinatePiece{low, high, part_of(piece.numerator, t0, t1),
+                         part_of(piece.weight, t0, t1)};
 }
 
 std::vector<MonotonePart> monotone_parts(const std::vector<CoordinatePiece>& pieces,

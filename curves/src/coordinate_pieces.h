@@ -2,6 +2,7 @@
 // One coordinate of a curve as quotients of polynomials, and where it rises and falls. Private to
 // curves. [control]
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "knotwave/curves/nurbs_curve.h"
@@ -22,6 +23,8 @@ struct CoordinatePiece {
   double parameter(double t) const noexcept;
 };
 std::vector<CoordinatePiece> coordinate_pieces(const NurbsCurve& curve, int coordinate);
+/// The part of a piece that lies in [low, high]; none where that is too short for a double.
+std::optional<CoordinatePiece> clipped(const CoordinatePiece& piece, double low, double high);
 
 /// A part of a piece from t0 to t1 on which the coordinate doesn't turn.
 struct MonotonePart {

@@ -243,4 +243,11 @@ Fault find_fault(const SurfaceSpec& spec) {
   return find_number_fault(what, spec.dim, spec.points, spec.weights);
 }
 
+Result<void> check_parameter(const NurbsCurve& curve, double u) {
+  if (u >= curve.u_min() && u <= curve.u_max()) return {};  // not for NaN
+  return fail(ErrorCode::parameter_out_of_range,
+              "curve '" + curve.name() + "': u = " + number_text(u) + " is outside " +
+                  number_text(curve.u_min()) + ".." + number_text(curve.u_max()));
+}
+
 }  // namespace knotwave::curves

@@ -40,4 +40,7 @@ std::optional<SpecFault> find_number_fault(const std::string& what, int dim,
                                            std::span<const double> points,
                                            std::span<const double> weights);
 
+/// Whether u is in the domain. Errors: parameter_out_of_range, with u and the domain.
+Result<void> check_parameter(const NurbsCurve& curve, double u);
+
 }  // namespace knotwave::curves

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "knotwave/base/elementary.h"
+#include "knotwave/base/gauss_legendre.h"
 #include "knotwave/dsp/wave_tables.h"
 
 #include "complex_product.h"
@@ -22,16 +23,6 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr int kMaxDegree = curves::kMaxPieceDegree;
 /// Below this many cycles of the harmonic in a piece: Gauss-Legendre (theta < 3 pi).
 constexpr double kGaussCycles = 1.5;
-
-/// Nodes in (0, 1) above one half, and weights; the others mirror them.
-/// tools/make_fourier_tables.py
-struct GaussNode {
-  double distance;  ///< from 1/2
-  double weight;
-};
-constexpr std::array<GaussNode, 8> kGauss = {{
-#include "gauss_legendre_16.inc"
-}};
 
 Complex unit(double cycles) {
   const base::SinCos value = base::sin_cos_cycles(cycles);
@@ -53,7 +44,7 @@ struct Piece {
 /// Harmonics 1..last by quadrature. e^{-2 pi i n x} of each node is a running power: its error
 /// grows as n, to 1e-12 at the largest n, and is weighted by the piece's short width.
 void add_by_quadrature(const Piece& piece, std::size_t last, std::span<Complex> out) {
-  for (const GaussNode& node : kGauss) {
+  for (const base::GaussNode& node : base::kGaussLegendre16) {
     for (const double sign : {-1.0, 1.0}) {
       const double t = 0.5 + sign * node.distance;
       const double amount = horner(piece.coefficients, t) * node.weight * piece.width;

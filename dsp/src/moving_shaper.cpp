@@ -6,6 +6,7 @@
 #include <string>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/gauss_legendre.h"
 #include "knotwave/dsp/shaper.h"
 
 namespace knotwave::dsp {
@@ -14,12 +15,7 @@ namespace {
 constexpr int kMostPieces = 64;     // each may be crossed within one sample
 constexpr double kMaxError = 3e-8;  // of a piece's mean: -150 dB, as for shapers at rest
 
-struct Node {
-  double place, weight;  // from the middle of an interval of length 1
-};
-constexpr Node kNodes[] = {
-#include "gauss_legendre_16.inc"
-};
+constexpr auto& kNodes = base::kGaussLegendre16;
 constexpr std::size_t kPairs = std::size(kNodes);
 
 // Mean of the curve over [x0, x1] of one piece.
@@ -28,8 +24,8 @@ double gauss_mean(const curves::CurveProgram& curve, double x0, double x1,
   const double middle = 0.5 * (x0 + x1), width = x1 - x0;
   std::array<double, 2 * kPairs> x, y;
   for (std::size_t i = 0; i < kPairs; ++i) {
-    x[2 * i] = middle - width * kNodes[i].place;
-    x[2 * i + 1] = middle + width * kNodes[i].place;
+    x[2 * i] = middle - width * kNodes[i].distance;
+    x[2 * i + 1] = middle + width * kNodes[i].distance;
   }
   std::array<std::array<double, 2 * kPairs>, curves::kMaxControls> values;
   std::array<const double*, curves::kMaxControls> moved;

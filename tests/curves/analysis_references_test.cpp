@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ranges, roots, nearest places and areas against figures of 30 digits
+// Ranges, roots, nearest places, areas and lengths against figures of 30 digits
 // (tools/make_analysis_references.py).
 #include <algorithm>
 #include <cmath>
@@ -58,15 +58,20 @@ double nearest_error(const NurbsCurve& curve, const Numbers& exact) {
 double area_error(const NurbsCurve& curve, const Numbers& exact) {
   const auto area = integral(curve, exact[0], exact[1]);
   EXPECT_TRUE(area);
-  return std::abs(*area - exact[2]) / ulp_of(largest_coordinate(curve) * (exact[1] - exact[0]));
+  const double scale = largest_coordinate(curve) * (exact[1] - exact[0]);
+  return std::abs(*area - exact[2]) / (curve.is_rational() ? 0x1p-50 * scale : ulp_of(scale));
+}
+
+double length_error(const NurbsCurve& curve, const Numbers& exact) {
+  const auto length = arc_length(curve, exact[0], exact[1]);
+  EXPECT_TRUE(length);
+  return std::abs(*length - exact[2]) / (0x1p-50 * polygon_length(curve));
 }
 
 using Judge = double (*)(const NurbsCurve&, const Numbers&);
-const std::map<std::string, Judge> kJudges = {{"range", range_error},
-                                              {"variation", variation_error},
-                                              {"roots", roots_error},
-                                              {"nearest", nearest_error},
-                                              {"area", area_error}};
+const std::map<std::string, Judge> kJudges = {
+    {"range", range_error},     {"variation", variation_error}, {"roots", roots_error},
+    {"nearest", nearest_error}, {"area", area_error},           {"length", length_error}};
 
 struct Score {
   int count = 0;

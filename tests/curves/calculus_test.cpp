@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,104 +28,6 @@ NurbsCurve plain_curve(Dice& dice, int most_degree) {
   CurveSpec spec = random_spec(dice, 1 + dice.below(most_degree));
   spec.weights.clear();
   return made(std::move(spec));
-}
-
-TEST(Hodograph, OfASegmentIsTheDifferencesOfItsPoints) {
-  const auto slope = hodograph(scalar(3, {0, 1, 3, 2}));
-  ASSERT_TRUE(slope);
-  EXPECT_EQ(slope->degree(), 2);
-  EXPECT_THAT(slope->points(), ElementsAre(3, 6, -3));
-}
-
-TEST(Hodograph, ACornerBecomesAJumpBetweenItsSlopes) {
-  // 0 to 1 in half a unit, with slopes 2 and then -4.
-  const auto slope = hodograph(scalar(1, {0, 1, -1}, {0, 0, 0.5, 1, 1}));
-  ASSERT_TRUE(slope) << slope.error().message;
-  EXPECT_EQ(slope->degree(), 1);
-  EXPECT_THAT(slope->jumps(), ElementsAre(0.5));
-  EXPECT_EQ(at(*slope, 0.5, Side::left), 2);
-  EXPECT_EQ(at(*slope, 0.5, Side::right), -4);
-  EXPECT_EQ(at(*slope, 0.2), 2);
-  const auto smooth = hodograph(scalar(2, {0, 1, 2, 1, 0}, {0, 0, 0, 1, 1, 2, 2, 2}));
-  ASSERT_TRUE(smooth);
-  EXPECT_THAT(smooth->jumps(), ElementsAre(1));
-  EXPECT_EQ(at(*smooth, 1, Side::left), 2);
-  EXPECT_EQ(at(*smooth, 1, Side::right), -2);
-}
-
-TEST(Hodograph, OfAPeriodicCurveIsPeriodicUnlessItHasCorners) {
-  CurveSpec spec;
-  spec.degree = 2;
-  spec.points = {0, 1, 0, -1};
-  spec.periodic = true;
-  const auto slope = hodograph(made(spec));
-  ASSERT_TRUE(slope);
-  EXPECT_TRUE(slope->is_periodic());
-  EXPECT_EQ(at(*slope, 0.25), 4 * (0 - 1)) << "the third knot: between the points 1 and 0";
-  spec.degree = 1;
-  const auto steps = hodograph(made(spec));
-  ASSERT_TRUE(steps) << steps.error().message;
-  EXPECT_FALSE(steps->is_periodic());
-  EXPECT_EQ(at(*steps, 0.1), 4);
-}
-
-/// A curve that is cut open has its points rounded before their differences are taken: one ulp of
-/// the largest point over the narrowest p spans that two points share.
-double rounding_of_cut(const NurbsCurve& curve) {
-  const auto open = *curves::sub_curve(curve, curve.u_min(), curve.u_max());
-  const auto p = static_cast<std::size_t>(curve.degree());
-  double width = curve.u_max() - curve.u_min();
-  for (std::size_t i = 1; i + p + 1 < open.knots().size(); ++i) {
-    const double shared = open.knots()[i + p] - open.knots()[i];
-    if (shared > 0) width = std::min(width, shared);
-  }
-  return ulp_of(largest_coordinate(curve)) * curve.degree() / width;
-}
-
-TEST(Hodograph, IsTheDerivativeFromEitherSide) {
-  Dice dice(support::test_seed());
-  int done = 0;
-  double worst = 0;
-  for (int round = 0; round < support::test_count(10000); ++round) {
-    const NurbsCurve curve = plain_curve(dice, curves::kMaxDegree);
-    const auto slope = hodograph(curve);
-    if (!slope) {
-      ASSERT_EQ(slope.error().code, ErrorCode::coordinate_out_of_range) << slope.error().message;
-      continue;
-    }
-    ++done;
-    const bool cut = curve.is_periodic() && !slope->is_periodic();  // has no other side there
-    const double u = std::clamp(random_parameter(dice, curve), curve.u_min(), curve.u_max());
-    const Side side = dice.one_in(2) ? Side::left : Side::right;
-    if (cut && (u == curve.u_min() || u == curve.u_max())) continue;
-    double exact[2 * curves::kMaxDim], found[curves::kMaxDim];
-    curve.derivatives(u, 1, side, exact);
-    slope->evaluate(u, side, found);
-    for (int c = 0; c < curve.dim(); ++c) {
-      const double unit = ulp_of(largest_coordinate(*slope)) + (cut ? rounding_of_cut(curve) : 0);
-      const double error = std::abs(found[c] - exact[curve.dim() + c]) / unit;
-      worst = std::max(worst, error);
-      ASSERT_LE(error, 4) << "round " << round << " degree " << curve.degree() << " at " << u;
-    }
-  }
-  std::printf("%d hodographs, worst %.2f ulp\n", done, worst);
-  EXPECT_GT(done, support::test_count(2500));
-}
-
-TEST(Hodograph, SaysWhatHasNoSlope) {
-  const auto jump = hodograph(scalar(1, {0, 1, 3, 4}, {0, 0, 0.5, 0.5, 1, 1}, {0.5}));
-  ASSERT_FALSE(jump);
-  EXPECT_EQ(jump.error().code, ErrorCode::unsupported);
-  EXPECT_EQ(jump.error().message, "curve 'example' jumps at 0.5 and has no slope there: split it");
-  CurveSpec spec;
-  spec.degree = 2;
-  spec.points = {0, 1, 0};
-  spec.weights = {1, 2, 1};
-  EXPECT_EQ(hodograph(made(spec)).error().code, ErrorCode::unsupported);
-  EXPECT_EQ(antiderivative(made(spec)).error().code, ErrorCode::unsupported);
-  EXPECT_EQ(integral(made(spec), 0, 1).error().code, ErrorCode::unsupported);
-  const auto steep = hodograph(scalar(1, {0, 1e6}, {0, 0, 0.5, 0.5}));
-  EXPECT_EQ(steep.error().code, ErrorCode::coordinate_out_of_range);
 }
 
 TEST(Antiderivative, OfAFrequencyIsItsPhase) {
@@ -172,6 +74,8 @@ TEST(Antiderivative, IsTheIntegralAndItsSlopeIsTheCurve) {
 }
 
 TEST(Antiderivative, SaysWhatPassesTheLimits) {
+  EXPECT_EQ(antiderivative(made(spec_of(2, {0, 1, 0}, {}, {1, 2, 1}))).error().code,
+            ErrorCode::unsupported);
   EXPECT_EQ(antiderivative(scalar(15, std::vector<double>(16, 1.0))).error().code,
             ErrorCode::degree_out_of_range);
   EXPECT_EQ(antiderivative(scalar(1, {1e6, 1e6}, {0, 0, 2, 2})).error().code,
@@ -186,6 +90,41 @@ TEST(Integral, AddsUpOverItsParts) {
   EXPECT_EQ(*integral(steps, 0.3, 0.3), 0);
   EXPECT_EQ(integral(steps, 0, 1.5).error().code, ErrorCode::parameter_out_of_range);
   EXPECT_EQ(integral(steps, std::nan(""), 1).error().code, ErrorCode::parameter_out_of_range);
+}
+
+// 1 / (1 + u): ln 2. The half circle over its diameter: x' y = 2 pi / 4.
+TEST(Integral, OfWeightedCurvesIsThatOfTheirClosedForms) {
+  EXPECT_NEAR(*integral(made(spec_of(1, {1, 0.5}, {}, {1, 2})), 0, 1), std::numbers::ln2, 1e-15);
+  EXPECT_NEAR(*integral(made(spec_of(1, {1, 0.5}, {}, {1, 2})), 1, 0), -std::numbers::ln2, 1e-15);
+  // (1 - u^2) / (1 + u^2), the x of a quarter circle: pi / 2 - 1.
+  const NurbsCurve quarter = made(spec_of(2, {1, 1, 0}, {}, {1, 1, 2}));
+  EXPECT_NEAR(*integral(quarter, 0, 1), std::numbers::pi / 2 - 1, 1e-15);
+  // A jump belongs to neither side.
+  CurveSpec spec = spec_of(1, {1, 0.5, 1, 0.5}, {0, 0, 1, 1, 2, 2}, {1, 2, 1, 2});
+  spec.jumps = {1};
+  EXPECT_NEAR(*integral(made(spec), 0, 2), 2 * std::numbers::ln2, 1e-15);
+  EXPECT_EQ(integral(quarter, 0, 2).error().code, ErrorCode::parameter_out_of_range);
+}
+
+TEST(Integral, OfRandomWeightedCurvesAddsUpAndIsThatOfTheirElevation) {
+  Dice dice(support::test_seed());
+  double worst = 0;
+  for (int round = 0; round < support::test_count(600); ++round) {
+    const NurbsCurve curve = random_curve(dice, 1 + dice.below(14));
+    if (!curve.is_rational()) continue;
+    const double unit = 0x1p-50 * largest_coordinate(curve) * (curve.u_max() - curve.u_min());
+    const double u = dice.between(curve.u_min(), curve.u_max());
+    const int c = dice.below(curve.dim());
+    const double whole = *integral(curve, curve.u_min(), curve.u_max(), c);
+    const double parts =
+        *integral(curve, curve.u_min(), u, c) + *integral(curve, u, curve.u_max(), c);
+    worst = std::max(worst, std::abs(parts - whole) / unit);
+    ASSERT_LE(std::abs(parts - whole), unit) << round;
+    const auto raised = elevate_degree(curve);
+    ASSERT_TRUE(raised) << raised.error().message;
+    ASSERT_NEAR(*integral(*raised, curve.u_min(), curve.u_max(), c), whole, 4 * unit) << round;
+  }
+  std::printf("worst %.3f of 2^-50 max|P|\n", worst);
 }
 
 TEST(Curvature, OfCirclesAndGraphs) {

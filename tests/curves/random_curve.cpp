@@ -113,6 +113,20 @@ double largest_coordinate(const curves::NurbsCurve& curve) {
   return largest;
 }
 
+double polygon_length(const curves::NurbsCurve& curve) {
+  double sum = curve.dim() == 1 ? curve.u_max() - curve.u_min() : 0;
+  const auto points = curve.points();
+  const auto dim = std::size_t(curve.dim());
+  for (std::size_t i = dim; i < points.size(); i += dim) {
+    double square = 0;
+    for (std::size_t c = 0; c < dim; ++c) {
+      square += (points[i + c] - points[i - dim + c]) * (points[i + c] - points[i - dim + c]);
+    }
+    sum += std::sqrt(square);
+  }
+  return sum;
+}
+
 double ulp_of(double x) {
   return std::nextafter(std::abs(x), std::numeric_limits<double>::infinity()) - std::abs(x);
 }

@@ -31,6 +31,8 @@ curves::NurbsCurve random_curve(Dice& dice, int degree = 0);
 double random_parameter(Dice& dice, const curves::NurbsCurve& curve);
 
 double largest_coordinate(const curves::NurbsCurve& curve);
+/// Of the control polygon; of the graph's, with u, for one coordinate.
+double polygon_length(const curves::NurbsCurve& curve);
 /// Distance from |x| to the next larger double: what "4 ulp of max|P|" counts in.
 double ulp_of(double x);
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Edits that do not change the curve: exact in the reals, within 4 ulp of max|P| in double. Source:
-// Piegl & Tiller, The NURBS Book, 2nd ed.: A5.1 insertion, A5.6 decomposition.
+// Edits that do not change the curve: exact in the reals, within 4 ulp of max|P| in double. Both
+// limits at every knot and jump are kept; tests/curves/one_sided_test.cpp.
+// Source: Piegl & Tiller, The NURBS Book, 2nd ed.: A1.5 (de Casteljau), 3.2 (convex hull), A5.1
+// (Boehm's insertion), 5.2 and 5.3 (splitting, refinement), A5.6 (decomposition), 5.5 (elevation,
+// here by blossoms: src/spline_product.h); de Boor, A Practical Guide to Splines, X and XI
+// (evaluation, knot averages).
 #pragma once
 #include <span>
 #include <vector>

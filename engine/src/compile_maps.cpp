@@ -146,9 +146,10 @@ void PatchCompiler::drop_overridden_maps() {
 }
 
 Result<void> PatchCompiler::check_source(MapSource source, int index) const {
-  const std::size_t count = source == MapSource::envelope ? spec_.envelopes.size()
-                            : source == MapSource::lfo    ? spec_.lfos.size()
-                                                          : 128;
+  const std::size_t count = source == MapSource::envelope      ? spec_.envelopes.size()
+                            : source == MapSource::lfo         ? spec_.lfos.size()
+                            : source == MapSource::free_number ? spec_.free_numbers.size()
+                                                               : 128;
   return check_index("source", index, count);
 }
 
@@ -173,20 +174,11 @@ Result<void> PatchCompiler::check_target(const MapSpec& map) const {
       return check_index("lfo", index, spec_.lfos.size());
     case MapTarget::envelope_time:
       return check_index("envelope", index, spec_.envelopes.size());
+    case MapTarget::free_number:
+      return check_index("free number", index, spec_.free_numbers.size());
     default:
       return {};
   }
-}
-
-bool PatchCompiler::varies(const MapSpec& map, int most_steps) const {
-  if (most_steps == 0) return true;  // a circle, which make_schedule() names
-  if (varies_by_itself(map.source)) return true;
-  if (!map.surface.empty() && varies_by_itself(map.source_v)) return true;
-  const std::vector<int> moved = moved_numbers_of(map.curve);
-  return std::any_of(moved.begin(), moved.end(), [&](int number) {
-    const int mover = moved_[static_cast<std::size_t>(number)].map;
-    return varies(spec_.maps[static_cast<std::size_t>(mover)], most_steps - 1);
-  });
 }
 
 Result<void> PatchCompiler::check_map(const MapSpec& map, std::size_t number) const {
@@ -196,11 +188,7 @@ Result<void> PatchCompiler::check_map(const MapSpec& map, std::size_t number) co
     if (auto ok = check_source(source, index); !ok) return placed(ok.error(), path + ".from");
   }
   if (auto ok = check_target(map); !ok) return placed(ok.error(), path + ".to");
-  if (map.target != MapTarget::envelope_time || !varies(map, kMaxMaps)) return {};
-  return placed(fail(ErrorCode::unsupported,
-                     "an envelope's time is read once, when a note starts; an envelope or LFO "
-                     "cannot move it"),
-                path + ".from");
+  return {};
 }
 
 Result<void> PatchCompiler::add_curve(const MapSpec& map, std::size_t number,
@@ -263,28 +251,58 @@ Result<void> PatchCompiler::compile_map(const MapSpec& map, std::size_t number) 
 
 Result<void> PatchCompiler::order_steps() {
   Schedule schedule = make_schedule(program_->maps_, program_->envelopes_, program_->lfos_);
+  if (!schedule.stuck.empty()) return circle(schedule.stuck);
   program_->schedule_ = std::move(schedule.steps);
-  if (schedule.stuck.empty()) return {};
-  std::string names;
-  for (const PatchProgram::Step& step : schedule.stuck) {
+  return find_note_on_maps();
+}
+
+Error PatchCompiler::circle(const std::vector<PatchProgram::Step>& stuck) const {
+  using Kind = PatchProgram::Step::Kind;
+  std::vector<std::string> names;
+  const PatchProgram::Step* closing = nullptr;  // a circle always has a map
+  for (const PatchProgram::Step& step : stuck) {
     const auto index = static_cast<std::size_t>(step.index);
-    if (step.kind == PatchProgram::Step::Kind::envelope) {
-      names += " envelope '" + program_->envelopes_[index].name + "'";
-    } else if (step.kind == PatchProgram::Step::Kind::lfo) {
-      names += " lfo '" + program_->lfos_[index].name + "'";
+    std::string name;
+    if (step.kind == Kind::envelope) name = "envelope '" + program_->envelopes_[index].name + "'";
+    if (step.kind == Kind::lfo) name = "lfo '" + program_->lfos_[index].name + "'";
+    if (step.kind == Kind::map) {
+      if (closing == nullptr) closing = &step;
+      const int slot = program_->maps_[index].slot;
+      if (!is_free_slot(slot)) continue;
+      name = "free." + spec_.free_numbers[static_cast<std::size_t>(slot - kSlotFree)];
     }
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
-  if (names.empty()) names = " curves of maps";
-  // A circle is closed by a map onto an LFO's speed or a number of a curve.
-  const auto closing = std::find_if(
-      schedule.stuck.begin(), schedule.stuck.end(), [&](const PatchProgram::Step& step) {
-        if (step.kind != PatchProgram::Step::Kind::map) return false;
-        const int slot = program_->maps_[static_cast<std::size_t>(step.index)].slot;
-        return slot >= kSlotControl || (slot >= kSlotLfoRate && slot < kSlotEnvelopeTime);
-      });
+  if (names.empty()) names.emplace_back("curves of maps");
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? " " : ", ") + name;
   const auto map = static_cast<std::size_t>(closing->index);
-  return placed(fail(ErrorCode::cyclic_reference, "maps make these depend on themselves:" + names),
+  return placed(fail(ErrorCode::cyclic_reference, "maps make these depend on themselves:" + all),
                 map_part(map_origins_[map].number, ".to").path);
+}
+
+// Backwards from the envelopes' times, which are read once.
+Result<void> PatchCompiler::find_note_on_maps() {
+  std::array<bool, kSlotCount> is_read{};
+  std::fill_n(is_read.begin() + kSlotEnvelopeTime, kMaxVoiceEnvelopes, true);
+  std::vector<int>& found = program_->note_on_maps_;
+  const auto& schedule = program_->schedule_;
+  for (auto step = schedule.rbegin(); step != schedule.rend(); ++step) {
+    if (step->kind != PatchProgram::Step::Kind::map) continue;
+    const auto index = static_cast<std::size_t>(step->index);
+    const PatchProgram::MapPart& map = program_->maps_[index];
+    if (!is_read[static_cast<std::size_t>(map.slot)]) continue;
+    if (varies_by_itself(map.source) || varies_by_itself(map.source_v)) {
+      return about(fail(ErrorCode::unsupported,
+                        "an envelope's time is read once, when a note starts; an envelope or LFO "
+                        "cannot move it"),
+                   map_part(map_origins_[index].number, ".from"));
+    }
+    for (const int slot : slots_read_by(map)) is_read[static_cast<std::size_t>(slot)] = true;
+    found.push_back(step->index);
+  }
+  std::reverse(found.begin(), found.end());
+  return {};
 }
 
 }  // namespace knotwave::engine

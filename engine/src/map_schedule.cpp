@@ -30,7 +30,7 @@ class Scheduler {
       take(Kind::map, map_done_, [&](std::size_t i) {
         return source_is_ready(maps_[i].source, maps_[i].source_index) &&
                source_is_ready(maps_[i].source_v, maps_[i].source_v_index) &&
-               slots_are_ready(maps_[i].control_slots);
+               slots_are_ready(slots_read_by(maps_[i]));
       });
       take(Kind::envelope, envelope_done_,
            [&](std::size_t i) { return slots_are_ready(envelopes_[i].control_slots); });
@@ -78,7 +78,34 @@ class Scheduler {
     add(Kind::map, map_done_);
     add(Kind::envelope, envelope_done_);
     add(Kind::lfo, lfo_done_);
+    // What nothing left waits for is only behind a circle.
+    for (std::size_t before = 0; before != left.size();) {
+      before = left.size();
+      const std::vector<Step> all = left;
+      std::erase_if(left, [&](const Step& step) {
+        return std::none_of(all.begin(), all.end(),
+                            [&](const Step& other) { return waits_for(other, step); });
+      });
+    }
     return left;
+  }
+
+  bool waits_for(const Step& step, const Step& other) const {
+    const auto i = static_cast<std::size_t>(step.index), k = static_cast<std::size_t>(other.index);
+    const auto reads = [](const std::vector<int>& slots, int slot) {
+      return std::find(slots.begin(), slots.end(), slot) != slots.end();
+    };
+    if (other.kind != Kind::map) {
+      const auto source = other.kind == Kind::envelope ? MapSource::envelope : MapSource::lfo;
+      if (step.kind != Kind::map) return false;
+      const PatchProgram::MapPart& map = maps_[i];
+      return (map.source == source && map.source_index == other.index) ||
+             (map.source_v == source && map.source_v_index == other.index);
+    }
+    const int slot = maps_[k].slot;
+    if (step.kind == Kind::map) return reads(slots_read_by(maps_[i]), slot);
+    if (step.kind == Kind::envelope) return reads(envelopes_[i].control_slots, slot);
+    return slot == kSlotLfoRate + step.index || reads(lfos_[i].control_slots, slot);
   }
 
   std::span<const PatchProgram::MapPart> maps_;
@@ -89,6 +116,13 @@ class Scheduler {
 };
 
 }  // namespace
+
+std::vector<int> slots_read_by(const PatchProgram::MapPart& map) {
+  std::vector<int> slots = map.control_slots;
+  if (map.source == MapSource::free_number) slots.push_back(kSlotFree + map.source_index);
+  if (map.source_v == MapSource::free_number) slots.push_back(kSlotFree + map.source_v_index);
+  return slots;
+}
 
 Schedule make_schedule(std::span<const PatchProgram::MapPart> maps,
                        std::span<const PatchProgram::EnvelopePart> envelopes,

@@ -8,9 +8,14 @@
 
 namespace knotwave::engine {
 
+/// The slots a map reads: free numbers that are its sources, numbers of its curve that others move.
+std::vector<int> slots_read_by(const PatchProgram::MapPart& map);
+
 struct Schedule {
   std::vector<PatchProgram::Step> steps;
-  std::vector<PatchProgram::Step> stuck;  ///< what waits for itself: maps, envelopes, LFOs
+  /// What waits for itself, and what lies between two of those: maps, envelopes, LFOs. Never maps
+  /// or others that only wait for these.
+  std::vector<PatchProgram::Step> stuck;
 };
 
 /// Every map after what it reads, everything a map moves after the map; among what could come next

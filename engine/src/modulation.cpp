@@ -11,19 +11,23 @@ namespace knotwave::engine {
 namespace {
 
 constexpr bool is_external(MapSource source) {
-  return source != MapSource::envelope && source != MapSource::lfo;
+  return source != MapSource::envelope && source != MapSource::lfo &&
+         source != MapSource::free_number;
 }
 
 int smoothing_samples(double seconds, double rate_hz) KNOTWAVE_RT {
   return static_cast<int>(std::clamp(seconds * rate_hz + 0.5, 1.0, 1e8));
 }
 
-/// A source over the chunk: an envelope, an LFO, or the player's value on its way.
+/// A source over the chunk: an envelope, an LFO, a free number, or the player's value on its way.
 Signal source_signal(MapSource source, int index, const dsp::Smoother& smoother, std::int64_t first,
                      std::size_t n, ModulationScratch& scratch, ChunkBuffer& buffer) KNOTWAVE_RT {
   const auto i = static_cast<std::size_t>(index);
   if (source == MapSource::envelope) return {0, scratch.envelopes[i].data()};
   if (source == MapSource::lfo) return {0, scratch.lfos[i].data()};
+  if (source == MapSource::free_number) {
+    return mapped(scratch.slots[kSlotFree + i], n, buffer, limited_free);
+  }
   if (smoother.is_still(first)) return {smoother.target(), nullptr};
   smoother.render(first, std::span(buffer).first(n));
   return {0, buffer.data()};
@@ -99,45 +103,49 @@ void Modulation::retrigger(const PatchProgram& patch, const NoteContext& note,
   open_gates(patch, note, time, rate_hz, tempo);
 }
 
-// What the map comes to, of the player's present values alone. Moved numbers of its curve are asked
-// for likewise; a patch in which these go round in a circle does not compile.
-double Modulation::value_at_note_on(const PatchProgram& patch,
-                                    std::size_t index) const KNOTWAVE_RT {
-  const PatchProgram::MapPart& map = patch.maps()[index];
-  double value = players_[index].source.target();
+double Modulation::value_at_note_on(const PatchProgram::MapPart& map, const Player& player,
+                                    const SlotNumbers& slots) KNOTWAVE_RT {
+  const auto now = [&](MapSource source, int index, const dsp::Smoother& smoother) {
+    if (source != MapSource::free_number) return smoother.target();
+    return limited_free(slots[static_cast<std::size_t>(kSlotFree + index)]);
+  };
+  double value = now(map.source, map.source_index, player.source);
   if (map.curve) {
     std::array<double, curves::kMaxControls> controls{};
     const std::size_t count = map.control_slots.size();
     for (std::size_t k = 0; k < count; ++k) {
-      for (std::size_t i = 0; i < patch.maps().size(); ++i) {
-        if (patch.maps()[i].slot == map.control_slots[k]) controls[k] = value_at_note_on(patch, i);
-      }
+      controls[k] = slots[static_cast<std::size_t>(map.control_slots[k])];
     }
     value = map.curve->at_u(value, 0, std::span<const double>(controls).first(count));
   }
   if (map.surface) {
-    map.surface->evaluate(value, players_[index].source_v.target(), std::span(&value, 1));
+    const double v = now(map.source_v, map.source_v_index, player.source_v);
+    map.surface->evaluate(value, v, std::span(&value, 1));
   }
   value *= map.depth;
   return map.is_control ? map.low + (map.high - map.low) * std::clamp(value, 0.0, 1.0) : value;
 }
 
-double Modulation::time_octaves(const PatchProgram& patch, int envelope) const KNOTWAVE_RT {
-  double octaves = 0;
-  for (std::size_t i = 0; i < patch.maps().size(); ++i) {
-    if (patch.maps()[i].slot == kSlotEnvelopeTime + envelope) octaves += value_at_note_on(patch, i);
+// What the maps come to that envelopes' times hang on, of the player's present values alone.
+Modulation::SlotNumbers Modulation::numbers_at_note_on(const PatchProgram& patch) const
+    KNOTWAVE_RT {
+  SlotNumbers slots{};
+  for (const int index : patch.note_on_maps()) {
+    const auto i = static_cast<std::size_t>(index);
+    const PatchProgram::MapPart& map = patch.maps()[i];
+    slots[static_cast<std::size_t>(map.slot)] += value_at_note_on(map, players_[i], slots);
   }
-  return octaves;
+  return slots;
 }
 
 void Modulation::open_gates(const PatchProgram& patch, const NoteContext& note,
                             base::SampleTime time, double rate_hz,
                             const TempoClock& tempo) KNOTWAVE_RT {
+  const SlotNumbers slots = numbers_at_note_on(patch);
   for (std::size_t i = 0; i < patch.envelopes().size(); ++i) {
     const PatchProgram::EnvelopePart& part = patch.envelopes()[i];
     const double octaves = part.velocity_time * (127 - note.velocity) / 126.0 +
-                           part.key_time * (60 - note.note) / 12 +
-                           time_octaves(patch, static_cast<int>(i));
+                           part.key_time * (60 - note.note) / 12 + slots[kSlotEnvelopeTime + i];
     const double unit_s = part.tempo_beats ? tempo.seconds_per_quarter() : 1;
     envelopes_[i].gate_on(part.program, time, rate_hz, unit_s * base::exp2(octaves));
   }

@@ -65,8 +65,10 @@ class Modulation {
   };
   void open_gates(const PatchProgram& patch, const NoteContext& note, base::SampleTime time,
                   double rate_hz, const TempoClock& tempo) KNOTWAVE_RT;
-  double value_at_note_on(const PatchProgram& patch, std::size_t map) const KNOTWAVE_RT;
-  double time_octaves(const PatchProgram& patch, int envelope) const KNOTWAVE_RT;
+  using SlotNumbers = std::array<double, kSlotCount>;
+  static double value_at_note_on(const PatchProgram::MapPart& map, const Player& player,
+                                 const SlotNumbers& slots) KNOTWAVE_RT;
+  SlotNumbers numbers_at_note_on(const PatchProgram& patch) const KNOTWAVE_RT;
   void render_map(const PatchProgram& patch, std::size_t index, std::int64_t first, std::size_t n,
                   ModulationScratch& scratch) KNOTWAVE_RT;
   void render_envelope(const PatchProgram& patch, std::size_t index, std::int64_t first,

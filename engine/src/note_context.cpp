@@ -35,6 +35,7 @@ double source_value(const NoteContext& note, MapSource source, int index) KNOTWA
       return (index == kTimbre ? own : master).control(index);
     case MapSource::envelope:
     case MapSource::lfo:
+    case MapSource::free_number:
       break;
   }
   return 0;

@@ -20,7 +20,7 @@ struct NoteContext {
   bool is_mpe() const KNOTWAVE_RT { return master != channel; }
 };
 
-/// The present value of a source that is neither an envelope nor an LFO. [audio]
+/// The present value of a source that is neither an envelope, an LFO nor a free number. [audio]
 double source_value(const NoteContext& note, MapSource source, int index) KNOTWAVE_RT;
 
 /// Bend and channel tuning of the note in semitones. [audio]

@@ -4,10 +4,13 @@
 #include "patch_compiler.h"
 
 #include <algorithm>
+#include <array>
 
 #include "knotwave/base/document.h"
 #include "knotwave/base/elementary.h"
 #include "knotwave/base/suggest.h"
+
+#include "map_schedule.h"
 
 namespace knotwave::engine {
 
@@ -69,6 +72,8 @@ Result<void> PatchCompiler::check_counts() {
     return too_many("envelopes", spec_.envelopes.size(), kMaxEnvelopes);
   if (spec_.lfos.size() > kMaxLfos) return too_many("LFOs", spec_.lfos.size(), kMaxLfos);
   if (spec_.maps.size() > kMaxMaps) return too_many("maps", spec_.maps.size(), kMaxMaps);
+  if (spec_.free_numbers.size() > kMaxFreeNumbers)
+    return too_many("free numbers", spec_.free_numbers.size(), kMaxFreeNumbers);
   const int sources = static_cast<int>(spec_.oscillators.size());
   for (const int end : {spec_.crossfade_a, spec_.crossfade_b}) {
     if (!spec_.crossfade_on || end == kNoiseSource || (end >= 0 && end < sources)) continue;
@@ -221,10 +226,24 @@ void PatchCompiler::finish_flags() {
     for (std::size_t i = 0; i < p.lfos_.size(); ++i) {
       if (map.slot == kSlotLfoRate + static_cast<int>(i)) p.lfos_[i].rate_moves = true;
     }
-    const bool loudness = map.slot == kSlotAmp || map.slot == kSlotGain;
-    const bool velocity = map.source == MapSource::velocity || map.source_v == MapSource::velocity;
-    if (loudness && velocity) p.velocity_law_ = false;
   }
+  p.velocity_law_ = !velocity_is_loudness();
+}
+
+// Straight or through free numbers.
+bool PatchCompiler::velocity_is_loudness() const {
+  std::array<bool, kSlotCount> has_velocity{};
+  for (const PatchProgram::Step& step : program_->schedule_) {
+    if (step.kind != PatchProgram::Step::Kind::map) continue;
+    const PatchProgram::MapPart& map = program_->maps_[static_cast<std::size_t>(step.index)];
+    const std::vector<int> slots = slots_read_by(map);
+    has_velocity[static_cast<std::size_t>(map.slot)] |=
+        map.source == MapSource::velocity || map.source_v == MapSource::velocity ||
+        std::any_of(slots.begin(), slots.end(), [&](int slot) {
+          return is_free_slot(slot) && has_velocity[static_cast<std::size_t>(slot)];
+        });
+  }
+  return has_velocity[kSlotAmp] || has_velocity[kSlotGain];
 }
 
 int PatchCompiler::envelope_index(const std::string& name) const {

@@ -59,6 +59,9 @@ class PatchCompiler {
   Result<void> add_curve(const MapSpec& map, std::size_t number, PatchProgram::MapPart& part) const;
   Result<void> add_surface(const MapSpec& map, PatchProgram::MapPart& part) const;
   Result<void> order_steps();
+  Error circle(const std::vector<PatchProgram::Step>& stuck) const;
+  Result<void> find_note_on_maps();
+  bool velocity_is_loudness() const;
   void finish_flags();
 
   /// The curve, or unknown_name with a suggestion.
@@ -72,8 +75,6 @@ class PatchCompiler {
   };
   Result<MovedCurve> moved_curve(const std::string& name, const Part& part,
                                  bool is_function = true) const;
-  /// Whether an envelope or LFO is in what the map reads, through moved numbers too.
-  bool varies(const MapSpec& map, int most_steps) const;
   std::vector<int> moved_numbers_of(const std::string& curve) const;
   int envelope_index(const std::string& name) const;
   Error placed(Error error, std::string_view path) const;

@@ -34,6 +34,14 @@ std::string nearest(std::string_view word, const std::vector<std::string>& words
   return base::suggestion(word, std::vector<std::string_view>(words.begin(), words.end()));
 }
 
+std::string why_no_source(const PatchSpec& patch, std::string_view word) {
+  if (is_controller_word(word)) return "; controllers are cc0 to cc119";
+  const std::string suggestion = nearest(word, source_words(patch));
+  if (!suggestion.empty() || !word.starts_with(kFreePrefix)) return suggestion;
+  return "; a free number is there once a map has it as its target: to = \"" + std::string(word) +
+         "\"";
+}
+
 std::vector<std::string_view> split_at_dots(std::string_view text) {
   std::vector<std::string_view> parts;
   for (;;) {
@@ -74,6 +82,8 @@ void PatchReader::read_maps() {
   const Node* maps = top.array("maps");
   if (!top.ok()) return keep(top.finish());
   if (maps == nullptr) return;
+  collect_free_numbers(*maps);
+  if (!ok()) return;
   int number = 0;
   for (const Node& table : maps->items) {
     if (table.kind != Node::Kind::table) {
@@ -87,6 +97,28 @@ void PatchReader::read_maps() {
     }
     read_map(table, number);
     if (!ok()) return;
+  }
+}
+
+// A free number is there because a map moves it; maps before that one may read it.
+void PatchReader::collect_free_numbers(const Node& maps) {
+  for (const Node& table : maps.items) {
+    const Node* to = table.kind == Node::Kind::table ? table.find("to") : nullptr;
+    if (to == nullptr || to->kind != Node::Kind::string || !to->text.starts_with(kFreePrefix))
+      continue;
+    const std::string name = to->text.substr(kFreePrefix.size());
+    std::vector<std::string>& known = patch_.free_numbers;
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    if (!curves::is_valid_name(name)) {
+      return fail_at(to->line, to->column, ErrorCode::malformed,
+                     "'" + to->text + "': a name is 1 to 64 letters, digits, '_' and '-'");
+    }
+    if (static_cast<int>(known.size()) == kMaxFreeNumbers) {
+      return fail_at(to->line, to->column, ErrorCode::value_out_of_range,
+                     "'" + to->text + "' is one more than the " + std::to_string(kMaxFreeNumbers) +
+                         " free numbers a patch may have");
+    }
+    known.push_back(name);
   }
 }
 
@@ -139,9 +171,7 @@ void PatchReader::read_map_sources(TableReader& reader, MapSpec& map) {
     if (!source) {
       return reader.fail_at(
           *words[i], ErrorCode::unknown_name,
-          "there is no source '" + words[i]->text + "'" +
-              (is_controller_word(words[i]->text) ? "; controllers are cc0 to cc119"
-                                                  : nearest(words[i]->text, source_words(patch_))));
+          "there is no source '" + words[i]->text + "'" + why_no_source(patch_, words[i]->text));
     }
     found[i] = *source;
   }

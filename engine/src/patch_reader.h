@@ -81,6 +81,7 @@ class PatchReader {
   void read_shaper();
   void read_filter();
   void read_maps();
+  void collect_free_numbers(const Node& maps);
   void read_map(const Node& table, int number);
   void read_map_sources(TableReader& reader, MapSpec& map);
   void read_map_target(TableReader& reader, MapSpec& map);

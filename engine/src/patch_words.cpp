@@ -50,9 +50,9 @@ constexpr NamedTarget kNoiseTargets[] = {
     {"noise.gain", MapTarget::gain},
     {"noise.pan", MapTarget::pan},
 };
-constexpr std::string_view kTargetWords[] = {"amp",   "gain",   "pitch",    "pan",
-                                             "noise", "filter", "shaper",   "crossfade",
-                                             "lfo",   "curve",  "envelope", "surface"};
+constexpr std::string_view kTargetWords[] = {"amp",      "gain",    "pitch",     "pan", "noise",
+                                             "filter",   "shaper",  "crossfade", "lfo", "curve",
+                                             "envelope", "surface", "free"};
 
 int controller_number(std::string_view word) {
   if (!word.starts_with("cc")) return -1;
@@ -98,6 +98,10 @@ std::vector<TargetChoice> target_choices(const PatchSpec& patch) {
     all.push_back({"envelope." + patch.envelopes[i].name + ".time",
                    {MapTarget::envelope_time, static_cast<int>(i)}});
   }
+  for (std::size_t i = 0; i < patch.free_numbers.size(); ++i) {
+    all.push_back({std::string(kFreePrefix) + patch.free_numbers[i],
+                   {MapTarget::free_number, static_cast<int>(i)}});
+  }
   return all;
 }
 
@@ -137,6 +141,10 @@ std::optional<SourceWord> find_source(const PatchSpec& patch, std::string_view w
     return SourceWord{MapSource::envelope, i};
   }
   if (const int i = index_by_name(patch.lfos, word); i >= 0) return SourceWord{MapSource::lfo, i};
+  for (std::size_t i = 0; i < patch.free_numbers.size(); ++i) {
+    if (word.starts_with(kFreePrefix) && word.substr(kFreePrefix.size()) == patch.free_numbers[i])
+      return SourceWord{MapSource::free_number, static_cast<int>(i)};
+  }
   return std::nullopt;
 }
 
@@ -145,6 +153,8 @@ std::vector<std::string> source_words(const PatchSpec& patch) {
   for (const NamedSource& source : kSources) words.emplace_back(source.word);
   for (const EnvelopeUse& envelope : patch.envelopes) words.push_back(envelope.name);
   for (const LfoUse& lfo : patch.lfos) words.push_back(lfo.name);
+  for (const std::string& name : patch.free_numbers)
+    words.push_back(std::string(kFreePrefix) + name);
   return words;
 }
 

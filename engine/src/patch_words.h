@@ -10,7 +10,10 @@
 
 namespace knotwave::engine {
 
-/// A source with its index (control number, envelope or LFO).
+/// What comes before the name of a free number.
+inline constexpr std::string_view kFreePrefix = "free.";
+
+/// A source with its index (control number, envelope, LFO or free number).
 struct SourceWord {
   MapSource source = MapSource::constant;
   int index = 0;

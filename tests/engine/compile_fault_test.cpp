@@ -95,6 +95,23 @@ constexpr Fault kFaults[] = {
      "[[maps]]\nfrom = 'w'\nto = 'lfo.w.rate'\n",
      ErrorCode::cyclic_reference,
      "p.toml:25:6: error: maps make these depend on themselves: lfo 'w'"},
+    {"FreeNumbersThatMoveEachOther",
+     "[[maps]]\nfrom = 'free.x'\nto = 'free.y'\n[[maps]]\nfrom = 'free.y'\nto = 'free.x'\n"
+     "[[maps]]\nfrom = 'free.x'\nto = 'free.z'\n[[maps]]\nfrom = 'mod'\nto = 'free.x'\n",
+     ErrorCode::cyclic_reference,
+     "p.toml:20:6: error: maps make these depend on themselves: free.y, free.x"},
+    {"AFreeNumberThatMovesItself", "[[maps]]\nfrom = 'free.x'\nto = 'free.x'\n",
+     ErrorCode::cyclic_reference,
+     "p.toml:20:6: error: maps make these depend on themselves: free.x"},
+    {"AnLfoThatMovesItselfThroughAFreeNumber",
+     "[lfos.w]\ncurve = 'ring'\n[[maps]]\nfrom = 'w'\nto = 'free.x'\n"
+     "[[maps]]\nfrom = 'free.x'\nto = 'lfo.w.rate'\n",
+     ErrorCode::cyclic_reference,
+     "p.toml:22:6: error: maps make these depend on themselves: free.x, lfo 'w'"},
+    {"AnEnvelopesTimeFromAnLfoThroughAFreeNumber",
+     "[lfos.w]\ncurve = 'ring'\n[[maps]]\nfrom = 'free.x'\nto = 'envelope.amp.time'\n"
+     "[[maps]]\nfrom = 'w'\nto = 'free.x'\n",
+     ErrorCode::unsupported, "p.toml:24:8: error: map 2: an envelope's time is read once"},
     {"AnEnvelopesTimeFromAnLfo",
      "[lfos.w]\ncurve = 'ring'\n[[maps]]\nfrom = 'w'\nto = 'envelope.amp.time'\n",
      ErrorCode::unsupported, "p.toml:21:8: error: map 1: an envelope's time is read once"},

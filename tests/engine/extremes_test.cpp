@@ -41,7 +41,8 @@ constexpr Target kTargets[] = {{"amp", 240},
                                {"filter.resonance", 1000},
                                {"lfo.w.rate", 20},
                                {"lfo.s.rate", 20},
-                               {"envelope.amp.time", 20}};
+                               {"envelope.amp.time", 20},
+                               {"free.x", 1000}};
 constexpr int kTargetCount = static_cast<int>(std::size(kTargets));
 
 constexpr std::string_view kPatch = R"(format = 1
@@ -98,16 +99,21 @@ std::string extreme_patch(const base::RandomStream& random) {
   if (filter < 4) {
     text += "[filter]\nkind = '" + std::string(filters[filter]) + "'\nkey_track = 4\n";
   }
-  const char* sources[] = {"constant", "mod", "bend", "key_octaves", "b", "w", "s", "random"};
+  const char* sources[] = {"constant", "mod", "bend",   "key_octaves", "b",
+                           "w",        "s",   "random", "free.x"};
   for (int i = 0; i < kMaxMaps; ++i) {
     // The loudness first, then all others in turn.
     const Target& target = kTargets[i < kTargetCount ? i : below(kTargetCount)];
     const std::string word = target.word;
     if (!shapes && word.starts_with("shaper")) continue;
     if (filter == 4 && word.starts_with("filter")) continue;
-    // An LFO does not move itself, and an envelope's time nothing that moves.
+    // An LFO or a free number does not move itself, and an envelope's time nothing that moves.
     const bool at_rest = word.starts_with("lfo") || word.starts_with("envelope");
-    text += "[[maps]]\nfrom = '" + std::string(sources[below(at_rest ? 4 : 8)]) + "'\n";
+    text += "[[maps]]\nfrom = '" +
+            std::string(sources[below(at_rest            ? 4
+                                      : word == "free.x" ? 8
+                                                         : 9)]) +
+            "'\n";
     if (below(2) == 1) text += "curve = 'steep'\n";
     text += "to = '" + word + "'\nsmooth_s = " + (below(2) == 1 ? "0" : "0.01") +
             "\ndepth = " + (below(4) == 0 ? "-" : "") +

@@ -22,7 +22,12 @@ void check_maps(const engine::PatchSpec& patch) {
   for (const auto& map : patch.maps) {
     FUZZ_CHECK(map.curve.empty() || is_curve(patch, map.curve));
     FUZZ_CHECK(map.surface.empty() || patch.curves.find_surface(map.surface) != nullptr);
-    FUZZ_CHECK(map.target_index <= engine::kMaxOscillators);
+    const bool to_free = map.target == engine::MapTarget::free_number;
+    FUZZ_CHECK(map.target_index <= (to_free ? static_cast<int>(patch.free_numbers.size()) - 1
+                                            : engine::kMaxOscillators));
+    if (map.source == engine::MapSource::free_number) {
+      FUZZ_CHECK(map.source_index < static_cast<int>(patch.free_numbers.size()));
+    }
     if (map.source == engine::MapSource::envelope) {
       FUZZ_CHECK(map.source_index < static_cast<int>(patch.envelopes.size()));
     }
@@ -51,6 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   FUZZ_CHECK(!patch->envelopes.empty() && patch->envelopes.size() <= engine::kMaxEnvelopes);
   FUZZ_CHECK(patch->lfos.size() <= engine::kMaxLfos);
   FUZZ_CHECK(patch->maps.size() <= engine::kMaxMaps);
+  FUZZ_CHECK(patch->free_numbers.size() <= engine::kMaxFreeNumbers);
   for (const auto& oscillator : patch->oscillators) {
     FUZZ_CHECK(!oscillator.wave_file.empty() || is_curve(*patch, oscillator.wave) ||
                patch->curves.find_surface(oscillator.wave) != nullptr);

@@ -26,7 +26,8 @@ inline constexpr int kSlotSourcePhase = kSlotSourcePan + kMaxSources;
 inline constexpr int kSlotSourcePosition = kSlotSourcePhase + kMaxSources;
 inline constexpr int kSlotLfoRate = kSlotSourcePosition + kMaxSources;
 inline constexpr int kSlotEnvelopeTime = kSlotLfoRate + kMaxLfos;
-inline constexpr int kSlotControl = kSlotEnvelopeTime + kMaxVoiceEnvelopes;
+inline constexpr int kSlotFree = kSlotEnvelopeTime + kMaxVoiceEnvelopes;
+inline constexpr int kSlotControl = kSlotFree + kMaxFreeNumbers;
 inline constexpr int kSlotCount = kSlotControl + kMaxMaps;
 
 /// Where a target's value goes. `index` as MapSpec::target_index; for curve_weight and curve_point
@@ -59,11 +60,17 @@ constexpr int slot_of(MapTarget target, int index) KNOTWAVE_RT {
       return kSlotLfoRate + index;
     case MapTarget::envelope_time:
       return kSlotEnvelopeTime + index;
+    case MapTarget::free_number:
+      return kSlotFree + index;
     case MapTarget::curve_weight:
     case MapTarget::curve_point:
       return kSlotControl + index;
   }
   return kSlotAmp;
+}
+
+constexpr bool is_free_slot(int slot) KNOTWAVE_RT {
+  return slot >= kSlotFree && slot < kSlotFree + kMaxFreeNumbers;
 }
 
 }  // namespace knotwave::engine

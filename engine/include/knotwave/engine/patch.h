@@ -20,6 +20,7 @@ inline constexpr int kMaxOscillators = 4;
 inline constexpr int kMaxEnvelopes = 6;
 inline constexpr int kMaxLfos = 4;
 inline constexpr int kMaxMaps = 32;
+inline constexpr int kMaxFreeNumbers = 16;
 inline constexpr double kNoiseOffDb = -200;
 
 /// Where a key of a patch file is written; both 0: in no file.
@@ -80,7 +81,8 @@ enum class MapSource {
   pitch_bend,  ///< -1..1
   control,     ///< CC index; 14-bit where the LSB is sent
   envelope,
-  lfo,  ///< by index
+  lfo,          ///< by index
+  free_number,  ///< what the maps onto it add up to; by index
 };
 
 /// What a map moves, with the unit of its depth.
@@ -100,6 +102,7 @@ enum class MapTarget {
   envelope_time,  ///< octaves; read at note-on
   curve_weight,   ///< a weight of a curve: the value itself replaces it between low and high
   curve_point,    ///< a coordinate of a control point, likewise
+  free_number,    ///< a number of the patch's own, which maps may read
 };
 
 /// Map1: value = depth * curve(source), or depth * source without a curve. Map2: surface(source,
@@ -107,13 +110,14 @@ enum class MapTarget {
 /// or one that a map moves), only the rational ones do. Disabled and overridden maps cost nothing.
 struct MapSpec {
   MapSource source = MapSource::constant;
-  int source_index = 0;  ///< control number, envelope, lfo
+  int source_index = 0;  ///< control number, envelope, lfo, free number
   MapSource source_v = MapSource::constant;
   int source_v_index = 0;
   std::string curve;    ///< optional
   std::string surface;  ///< optional, instead of a curve
   MapTarget target = MapTarget::amp;
-  int target_index = -1;     ///< oscillator (kMaxOscillators = noise), envelope, lfo; -1 = voice
+  int target_index = -1;     ///< oscillator (kMaxOscillators = noise), envelope, lfo,
+                             ///< free number; -1 = voice
   std::string target_curve;  ///< curve_weight, curve_point
   int target_point = 0;
   int target_coordinate = 0;
@@ -150,6 +154,7 @@ struct PatchSpec {
   double filter_key_track = 0;  ///< 1 = cutoff follows the key, from middle C
   std::vector<EnvelopeUse> envelopes;
   std::vector<LfoUse> lfos;
+  std::vector<std::string> free_numbers;  ///< by the maps onto them, in their order
   std::vector<MapSpec> maps;
   double gain_db = 0;
   double pan = 0.5;

@@ -75,7 +75,8 @@ class PatchProgram {
   };
 
   /// Compiles. [control] Errors, with the patch's file and name: those of the parts, unknown_name,
-  /// cyclic_reference (an envelope, LFO or curve that moves itself, through others or not),
+  /// cyclic_reference (an envelope, LFO, curve or free number that moves itself, through others or
+  /// not),
   /// control_conflict (two maps onto one number), unsupported (a moved number in a 2-D curve that
   /// is a function; two in one waveform; an envelope's time from an envelope or LFO),
   /// file_not_found (a wave_file not in `cycles`).
@@ -95,6 +96,8 @@ class PatchProgram {
   /// Those that are on and not overridden.
   std::span<const MapPart> maps() const KNOTWAVE_RT { return maps_; }
   std::span<const Step> schedule() const KNOTWAVE_RT { return schedule_; }
+  /// The maps an envelope's time hangs on, through others or not, in the order of the schedule.
+  std::span<const int> note_on_maps() const KNOTWAVE_RT { return note_on_maps_; }
   const dsp::ShaperProgram* shaper() const KNOTWAVE_RT { return shaper_ ? &*shaper_ : nullptr; }
   /// Where the numbers of a curve that maps move are, in the order of its controls.
   std::span<const int> shaper_slots() const KNOTWAVE_RT { return shaper_slots_; }
@@ -124,6 +127,7 @@ class PatchProgram {
   std::vector<LfoPart> lfos_;
   std::vector<MapPart> maps_;
   std::vector<Step> schedule_;
+  std::vector<int> note_on_maps_;
   std::optional<dsp::ShaperProgram> shaper_;
   dsp::CrossfadeLaw crossfade_law_;
   std::optional<curves::CurveProgram> glide_curve_;

@@ -18,6 +18,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "knotwave/base/sha256.h"
 #include "knotwave/base/suggest.h"
 
 #include "unfinished_files.h"
@@ -26,6 +27,8 @@ namespace knotwave::base {
 namespace {
 
 constexpr std::string_view kPartMark = ".part-";
+constexpr std::size_t kMaxNameBytes = 255;     ///< of the file systems we write to
+constexpr std::size_t kMaxProcessDigits = 10;  ///< of a pid_t
 
 Error system_error(int number, const std::string& what) {
   const bool full = number == ENOSPC || number == EDQUOT;
@@ -85,6 +88,19 @@ std::string nearest_file(const std::string& path) {
   return "; did you mean '" + folder + std::string(nearest) + "'?";
 }
 
+/// What stands before the mark in the name of a part: the name, or as much of it as fits with a
+/// hash that tells it from its like.
+std::string part_stem(const std::string& name) {
+  constexpr std::size_t kMost = kMaxNameBytes - kPartMark.size() - kMaxProcessDigits;
+  if (name.size() <= kMost) return name;
+  constexpr std::size_t kHashDigits = 16;
+  Sha256 hash;
+  hash.update(std::as_bytes(std::span(name)));
+  std::size_t kept = kMost - kHashDigits - 1;
+  while (kept > 0 && (name[kept] & 0xC0) == 0x80) --kept;  // no UTF-8 letter is cut
+  return name.substr(0, kept) + '-' + hash.finish_hex().substr(0, kHashDigits);
+}
+
 /// The process id at the end of `entry` if it is NAME.part-PID, else 0.
 pid_t part_owner(std::string_view entry, std::string_view name) {
   if (!entry.starts_with(name)) return 0;
@@ -107,10 +123,11 @@ bool is_abandoned(const std::string& part_path, pid_t owner) {
 void sweep_abandoned_parts(const std::string& path) {
   const std::string folder = folder_of(path);
   const std::string name = name_of(path);
+  const std::string stem = part_stem(name);
   const std::unique_ptr<DIR, int (*)(DIR*)> stream(::opendir(folder.c_str()), ::closedir);
   if (!stream) return;
   while (const dirent* entry = ::readdir(stream.get())) {
-    const pid_t owner = part_owner(entry->d_name, name);
+    const pid_t owner = part_owner(entry->d_name, stem);
     const std::string part_path = path.substr(0, path.size() - name.size()) + entry->d_name;
     if (owner > 0 && is_abandoned(part_path, owner)) ::unlink(part_path.c_str());
   }
@@ -181,6 +198,7 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
   file.path_ = *place;
   struct stat old {};
   const bool exists = ::stat(file.path_.c_str(), &old) == 0;
+  if (!exists && errno == ENAMETOOLONG) return system_error(errno, "cannot write '" + path + "'");
   if (file.path_.empty() || file.path_.back() == '/' || (exists && S_ISDIR(old.st_mode))) {
     return fail(ErrorCode::io_failed, "cannot write '" + path + "': it is a folder, not a file");
   }
@@ -189,7 +207,10 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
                 "cannot write '" + path + "': it is a device or pipe, not a file");
   }
   sweep_abandoned_parts(file.path_);
-  const std::string part_path = file.path_ + std::string(kPartMark) + std::to_string(::getpid());
+  const std::string name = name_of(file.path_);
+  const std::string part_path = file.path_.substr(0, file.path_.size() - name.size()) +
+                                part_stem(name) + std::string(kPartMark) +
+                                std::to_string(::getpid());
   if (is_unfinished_here(part_path)) {
     return fail(ErrorCode::io_failed, "cannot write '" + path + "': it is being written already");
   }
@@ -254,6 +275,28 @@ Result<void> write_file(const std::string& path, std::string_view bytes) {
   if (!file) return file.error();
   if (Result<void> written = file->write(std::as_bytes(std::span(bytes))); !written) return written;
   return file->commit();
+}
+
+Result<void> write_to_standard_output(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && errno == EPIPE) {
+      return fail(ErrorCode::io_failed, "cannot write to standard output: its reader has gone");
+    }
+    if (count < 0) return system_error(errno, "cannot write to standard output");
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return {};
+}
+
+bool has_ending(std::string_view path, std::string_view ending) noexcept {
+  if (path.size() < ending.size()) return false;
+  const auto is_same = [](char lower, char c) {
+    return lower == (c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c);
+  };
+  return std::equal(ending.begin(), ending.end(),
+                    path.end() - static_cast<std::ptrdiff_t>(ending.size()), is_same);
 }
 
 }  // namespace knotwave::base

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <vector>
 
 namespace knotwave::base {
@@ -13,6 +14,8 @@ namespace {
 constexpr std::size_t kMaxWord = 64;
 /// A shorter beginning says too little.
 constexpr std::size_t kMinBeginning = 3;
+/// More words that begin so are a list, not a suggestion.
+constexpr std::size_t kMaxMeant = 3;
 
 /// ASCII only, in any locale.
 std::string lower_case(std::string_view word) {
@@ -23,15 +26,13 @@ std::string lower_case(std::string_view word) {
   return lower;
 }
 
-/// The only known word that begins so, or empty.
-std::string_view completed(std::string_view word, std::span<const std::string_view> known) {
-  std::string_view found;
+/// The known words that begin so.
+std::vector<std::string_view> completed(std::string_view word,
+                                        std::span<const std::string_view> known) {
+  std::vector<std::string_view> found;
   if (word.size() < kMinBeginning) return found;
-  for (const std::string_view candidate : known) {
-    if (!candidate.starts_with(word)) continue;
-    if (!found.empty()) return {};
-    found = candidate;
-  }
+  std::copy_if(known.begin(), known.end(), std::back_inserter(found),
+               [word](std::string_view candidate) { return candidate.starts_with(word); });
   return found;
 }
 
@@ -58,23 +59,33 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> known) {
   if (word.size() > kMaxWord) return {};
   std::string_view best;
-  std::size_t best_distance = word.size() / 3 + 2;
+  std::size_t best_distance = kMaxWord;
   const std::string lower = lower_case(word);
   for (const std::string_view candidate : known) {
     if (candidate.size() > kMaxWord) continue;
     const std::size_t distance = edit_distance(lower, lower_case(candidate));
-    if (2 * distance > std::max(word.size(), candidate.size())) continue;
+    const std::size_t longer = std::max(word.size(), candidate.size());
+    if (2 * distance > longer || distance > std::max<std::size_t>(1, longer / 3)) continue;
     if (distance < best_distance) {
       best = candidate;
       best_distance = distance;
     }
   }
-  return best.empty() ? completed(word, known) : best;
+  if (!best.empty()) return best;
+  const auto longer_words = completed(word, known);
+  return longer_words.size() == 1 ? longer_words.front() : std::string_view{};
 }
 
 std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
-  const std::string_view nearest = nearest_word(word, known);
-  return nearest.empty() ? std::string{} : "; did you mean '" + std::string(nearest) + "'?";
+  std::vector<std::string_view> meant = {nearest_word(word, known)};
+  if (meant.front().empty()) meant = completed(word, known);
+  if (meant.empty() || meant.size() > kMaxMeant) return {};
+  std::string text = "; did you mean ";
+  for (std::size_t i = 0; i < meant.size(); ++i) {
+    text += i == 0 ? "'" : i + 1 < meant.size() ? ", '" : " or '";
+    text += std::string(meant[i]) + "'";
+  }
+  return text + "?";
 }
 
 }  // namespace knotwave::base

@@ -4,11 +4,12 @@
 #include "sound_encoder.h"
 
 #include <algorithm>
-#include <cctype>
 
 #ifdef KNOTWAVE_HAVE_SNDFILE
 #include <sndfile.h>
 #include <sys/stat.h>
+
+#include "knotwave/base/file.h"
 
 #include "descriptor.h"
 #endif
@@ -28,14 +29,6 @@ namespace {
 
 constexpr std::int64_t kMaxWavBytes = 0xFFFFFFFF;
 constexpr std::int64_t kHeaderBytes = 1024;  // more than any header of ours
-
-bool ends_with(const std::string& path, std::string_view ending) {
-  return path.size() >= ending.size() &&
-         std::equal(ending.begin(), ending.end(), path.end() - static_cast<long>(ending.size()),
-                    [](char a, char b) {
-                      return a == static_cast<char>(std::tolower(static_cast<unsigned char>(b)));
-                    });
-}
 
 std::int64_t sample_bytes(SampleFormat format) {
   return format == SampleFormat::pcm16 ? 2 : format == SampleFormat::pcm24 ? 3 : 4;
@@ -58,14 +51,15 @@ Result<int> format_of(const SoundWriteConfig& config) {
                       : config.format == SampleFormat::pcm24 ? SF_FORMAT_PCM_24
                                                              : SF_FORMAT_FLOAT;
   int container = 0;
-  if (ends_with(config.path, ".flac")) {
+  if (base::has_ending(config.path, ".flac")) {
     container = SF_FORMAT_FLAC;
     if (config.format == SampleFormat::float32) {
       return fail(ErrorCode::unsupported_format,
                   "cannot write '" + config.path +
                       "': FLAC holds 16 or 24 bits, not 32-bit float; use .wav");
     }
-  } else if (ends_with(config.path, ".wav")) {
+    if (!flac_holds_rate(config.rate_hz)) return format_error(config, kFlacRates);
+  } else if (base::has_ending(config.path, ".wav")) {
     container = passes_wav(config, config.expected_frames) ? SF_FORMAT_RF64 : SF_FORMAT_WAV;
   } else {
     return fail(ErrorCode::unsupported_format,
@@ -114,6 +108,8 @@ class SndfileEncoder : public SoundEncoder {
   }
 
   Result<void> close() override {
+    // The header is written with the first frame; without any, the file would be empty.
+    if (frames_ == 0) sf_command(file_, SFC_UPDATE_HEADER_NOW, nullptr, 0);
     const int code = sf_close(std::exchange(file_, nullptr));
     if (write_error_ != 0 || code != 0) return error(sf_error_number(code));
     return {};

@@ -15,21 +15,6 @@
 namespace knotwave::io {
 namespace {
 
-/// Standard output as raw float32 little-endian. The machines we build for are little-endian.
-Result<void> write_to_pipe(std::span<const float> samples) {
-  std::span<const std::byte> bytes = std::as_bytes(samples);
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0 && errno == EPIPE) {
-      return fail(ErrorCode::io_failed, "cannot write to standard output: its reader has gone");
-    }
-    if (count < 0) return system_error(errno, "cannot write to standard output");
-    bytes = bytes.subspan(static_cast<std::size_t>(count));
-  }
-  return {};
-}
-
 Result<std::string> sha256_of(int descriptor, const std::string& path) {
   base::Sha256 hash;
   std::vector<std::byte> block(1 << 16);
@@ -101,7 +86,8 @@ Result<void> SoundWriter::write(std::span<const float> interleaved) {
   KNOTWAVE_ASSERT(interleaved.size() % static_cast<std::size_t>(s.config.channels) == 0);
   if (auto good = s.check(interleaved); !good) return good;
   s.frames += static_cast<std::int64_t>(interleaved.size()) / s.config.channels;
-  if (!s.file) return write_to_pipe(interleaved);
+  // Raw float32: the machines we build for are little-endian.
+  if (!s.file) return base::write_to_standard_output(std::as_bytes(interleaved));
   if (!s.quantiser) return s.encoder->write(interleaved);
   s.integers.resize(interleaved.size());
   s.quantiser->quantise(interleaved, s.integers);

@@ -117,6 +117,48 @@ TEST(AtomicFile, ReplacingKeepsTheModeAndTheLink) {
   EXPECT_EQ(info.st_mode & 0777, 0640u);
 }
 
+TEST(AtomicFile, ANameMayBeAsLongAsTheFileSystemAllows) {
+  const ScratchFolder folder;
+  const std::string ending = ".wav";
+  for (const std::size_t size : {235u, 239u, 240u, 250u, 255u}) {
+    const std::string name = std::string(size - ending.size(), 'n') + ending;
+    const Result<AtomicFile> old = AtomicFile::create(folder.file(name));
+    ASSERT_TRUE(old) << old.error().to_string();
+    const std::string neighbour = "m" + name.substr(1);
+    EXPECT_TRUE(write_file(folder.file(neighbour), "x")) << "of the same length";
+    const std::string alike = name.substr(0, size - 1) + "x";  // differs where a part is cut
+    EXPECT_TRUE(write_file(folder.file(alike), "x"));
+    EXPECT_FALSE(write_file(folder.file(name), "x")) << "is being written already";
+  }
+  EXPECT_EQ(names_in(folder.path()).size(), 10u);
+  const Result<void> written = write_file(folder.file(std::string(256, 'n')), "x");
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().message,
+            "cannot write '" + folder.file(std::string(256, 'n')) + "': File name too long");
+}
+
+TEST(AtomicFile, SweepsCutPartsOfTheDeadToo) {
+  const ScratchFolder folder;
+  const std::string name(254, 'n');
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const Result<AtomicFile> part = AtomicFile::create(folder.file(name));
+    ::_exit(part ? 0 : 1);  // no destructor runs
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_EQ(status, 0);
+  ASSERT_EQ(names_in(folder.path()).size(), 1u);
+  ASSERT_TRUE(write_file(folder.file(name), "new"));
+  EXPECT_EQ(names_in(folder.path()), Names{name});
+}
+
+TEST(HasEnding, LettersCountInAnyCase) {
+  for (const char* path : {"a.wav", "a.WAV", "a.Wav", ".wav"})
+    EXPECT_TRUE(has_ending(path, ".wav"));
+  for (const char* path : {"a.wave", "wav", "a.flac", ""}) EXPECT_FALSE(has_ending(path, ".wav"));
+}
+
 TEST(AtomicFile, MovesOwnTheFile) {
   const ScratchFolder folder;
   Result<AtomicFile> made = AtomicFile::create(folder.file("a"));

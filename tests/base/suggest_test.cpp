@@ -45,6 +45,25 @@ TEST(Suggest, WhatIsTooFarIsNotSuggested) {
   EXPECT_EQ(nearest_word("knots", {}), "");
 }
 
+TEST(Suggest, AWordThatDiffersInMoreThanAThirdIsAnother) {
+  constexpr std::array<std::string_view, 4> kCommands = {"check", "info", "eval", "plot"};
+  for (const char* word : {"split", "part", "fit", "elevate", "morph", "join"}) {
+    EXPECT_EQ(nearest_word(word, kCommands), "") << word;
+  }
+  EXPECT_EQ(nearest_word("plto", kCommands), "plot");
+  constexpr std::array<std::string_view, 1> kLong = {"polyphony"};
+  EXPECT_EQ(nearest_word("polyfony", kLong), "polyphony") << "two of nine letters";
+}
+
+TEST(Suggest, SeveralWordsThatBeginSoAreAllNamed) {
+  constexpr std::array<std::string_view, 5> kCurves = {"decay60", "decay60_light", "bell-low",
+                                                       "bell-high", "bell-mid"};
+  EXPECT_EQ(suggestion("deca", kCurves), "; did you mean 'decay60' or 'decay60_light'?");
+  EXPECT_EQ(suggestion("bell", kCurves), "; did you mean 'bell-low', 'bell-high' or 'bell-mid'?");
+  constexpr std::array<std::string_view, 4> kMany = {"wave-a", "wave-b", "wave-c", "wave-d"};
+  EXPECT_EQ(suggestion("wav", kMany), "") << "four are a list";
+}
+
 TEST(Suggest, TextIsReadyToAppend) {
   EXPECT_EQ(suggestion("knot", kKeys), "; did you mean 'knots'?");
   EXPECT_EQ(suggestion("sustain", kKeys), "");

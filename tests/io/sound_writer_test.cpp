@@ -215,7 +215,9 @@ TEST_F(SoundWriterTest, FormatsThatCannotBeAreRefusedBeforeAnyFileIsMade) {
     const char* text;
   } cases[] = {
       {{.path = folder_.file("x.flac"), .format = SampleFormat::float32}, "not 32-bit float"},
-      {{.path = folder_.file("x.flac"), .rate_hz = 768000}, "768000 Hz"},
+      {{.path = folder_.file("x.flac"), .rate_hz = 768000}, "768000 Hz: FLAC holds rates to"},
+      {{.path = folder_.file("x.flac"), .rate_hz = 655351}, "655351 Hz: FLAC holds rates to"},
+      {{.path = folder_.file("x.flac"), .rate_hz = 65536}, "65536 Hz: FLAC holds rates to"},
       {{.path = folder_.file("x.flac"), .channels = 9}, "9 channels"},
       {{.path = folder_.file("x.mp3")}, "neither in .wav nor in .flac"},
       {{.path = folder_.file("x")}, "neither in .wav nor in .flac"},
@@ -227,6 +229,33 @@ TEST_F(SoundWriterTest, FormatsThatCannotBeAreRefusedBeforeAnyFileIsMade) {
     EXPECT_THAT(writer.error().message, HasSubstr(c.text));
   }
   EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(SoundWriterTest, FlacIsWrittenAtItsHighestRates) {
+  for (const int rate_hz : {65535, 65540, 192000, 384000, 655350}) {
+    const std::string path = folder_.file("x.flac");
+    write({.path = path, .rate_hz = rate_hz}, noise(2000, 1));
+    const auto sound = read_sound(path);
+    EXPECT_EQ(sound->rate_hz, rate_hz);
+    EXPECT_EQ(sound->frames, 1000);
+  }
+}
+
+TEST_F(SoundWriterTest, AFileWithoutFramesHasItsHeader) {
+  for (const char* name : {"x.wav", "x.flac"}) {
+    const std::string path = folder_.file(name);
+    write({.path = path, .rate_hz = 44100}, {});
+    const auto sound = read_sound(path);
+    ASSERT_FALSE(sound.has_value());
+    EXPECT_THAT(sound.error().message, HasSubstr("no frame")) << name;
+  }
+  // A FLAC begins with its mark and a STREAMINFO of 34 bytes (RFC 9639, section 8.2) that holds the
+  // rate in 20 bits, channels - 1 in 3, bits - 1 in 5, 36 bits of length, and the MD5 of no bytes.
+  const std::string flac = file_bytes(folder_.file("x.flac"));
+  ASSERT_GE(flac.size(), 42u);
+  EXPECT_EQ(flac.substr(0, 8), std::string("fLaC\0\0\0\x22", 8));
+  EXPECT_EQ(flac.substr(18, 8), std::string("\x0a\xc4\x43\x70\0\0\0\0", 8));
+  EXPECT_EQ(flac.substr(26, 4), "\xd4\x1d\x8c\xd9");
 }
 
 TEST_F(SoundWriterTest, WithoutFinishTheOldFileIsKeptAndNothingElse) {

@@ -15,8 +15,9 @@ namespace knotwave::base {
 /// folder, no permission), file_too_large.
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes);
 
-/// A file being written beside its final name as NAME.part-PID. commit() syncs and renames it; the
-/// destructor removes what was not committed, and so does remove_unfinished_files().
+/// A file being written beside its final name as NAME.part-PID; a NAME too long for that is cut and
+/// ends in a hash. commit() syncs and renames it; the destructor removes what was not committed,
+/// and so does remove_unfinished_files().
 class AtomicFile {
  public:
   /// Errors: io_failed, disk_full; the message names the folder and the reason. Parts that dead
@@ -44,5 +45,11 @@ void remove_unfinished_files() noexcept;
 
 /// create, write, commit in one.
 Result<void> write_file(const std::string& path, std::string_view bytes);
+
+/// All of `bytes`, past the buffers of stdio. Errors: disk_full, io_failed (its reader has gone).
+Result<void> write_to_standard_output(std::span<const std::byte> bytes);
+
+/// Whether `path` ends in `ending` (".wav", in lower case), its ASCII letters in any case.
+bool has_ending(std::string_view path, std::string_view ending) noexcept;
 
 }  // namespace knotwave::base

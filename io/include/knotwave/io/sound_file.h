@@ -52,8 +52,17 @@ Result<Cycles> read_cycles(const std::string& path, int frame = 0);
 
 enum class SampleFormat { pcm16, pcm24, float32 };
 
+/// The rates a frame of FLAC can name (RFC 9639, section 9.1.2), which is what libsndfile writes:
+/// up to 65535 Hz, and up to 655350 Hz in steps of 10.
+constexpr bool flac_holds_rate(int rate_hz) {
+  return rate_hz >= 1 && (rate_hz <= 65535 || (rate_hz <= 655350 && rate_hz % 10 == 0));
+}
+inline constexpr const char* kFlacRates =
+    "FLAC holds rates to 65535 Hz, and multiples of 10 to 655350 Hz";
+
 struct SoundWriteConfig {
-  std::string path;  ///< ".wav" or ".flac"; "-" is raw float32 little-endian to standard output
+  std::string path;  ///< ".wav" or ".flac", in any case; "-" is raw float32 little-endian to
+                     ///< standard output
   int rate_hz = 48000;
   int channels = 2;
   SampleFormat format = SampleFormat::pcm24;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
 #include "knotwave/base/document.h"
 #include "knotwave/base/elementary.h"
@@ -51,7 +50,6 @@ struct Engine::State {
         voice_right(voice_left.size()) {
     active.reserve(performance.slots().all().size());
     for (ChannelBus& bus : buses) bus.prepare(config.rate_hz, kSegment);
-    if (config.threads > 1) workers.emplace(config.threads);
   }
 
   void reset(const BankProgram* bank) {
@@ -83,7 +81,7 @@ struct Engine::State {
   std::size_t segment = 0;
   int sharing = 1;  ///< threads that take part in this segment
   std::int64_t now = 0;
-  std::optional<Workers> workers;
+  std::unique_ptr<Workers> workers;  ///< none: one thread renders all
 };
 
 Engine::Engine(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -94,6 +92,11 @@ Result<std::unique_ptr<Engine>> Engine::create(const EngineConfig& config,
   if (auto ok = check(config); !ok) return ok.error();
   if (bank == nullptr) return fail(ErrorCode::missing_key, "the engine needs a bank");
   auto state = std::make_unique<State>(config);
+  if (config.threads > 1) {
+    auto workers = Workers::start(config.threads);
+    if (!workers) return std::move(workers).error();
+    state->workers = std::move(workers).value();
+  }
   state->first_bank = bank;
   state->reset(bank);
   return std::unique_ptr<Engine>(new Engine(std::move(state)));

@@ -38,6 +38,24 @@ void exclude(base::TableReader& reader, const char* one, const char* other) {
                  std::string("'") + one + "' and '" + other + "' exclude each other");
 }
 
+void check_wave_file(base::TableReader& reader, const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  const fs::file_status status = fs::status(path, failed);
+  const base::Node& place = *reader.node("wave_file");
+  if (status.type() == fs::file_type::not_found) {
+    reader.fail_at(place, ErrorCode::file_not_found, "there is no file '" + path + "'");
+  } else if (failed) {
+    reader.fail_at(place, ErrorCode::io_failed,
+                   "cannot look at '" + path + "': " + failed.message());
+  } else if (status.type() != fs::file_type::regular) {
+    const bool is_folder = status.type() == fs::file_type::directory;
+    reader.fail_at(place, ErrorCode::io_failed,
+                   "'" + path + (is_folder ? "' is a folder" : "' is a device or pipe") +
+                       ", not a regular file");
+  }
+}
+
 }  // namespace
 
 void PatchReader::check_envelope_name(TableReader& reader, const std::string& name) {
@@ -74,11 +92,7 @@ void PatchReader::read_oscillator(const Node::Member& member) {
   spec.wave = curve_name(reader, "wave", Role::wave);
   if (const std::string file = reader.string("wave_file", ""); reader.node("wave_file")) {
     spec.wave_file = FileShelf::beside(source_, file);
-    std::error_code failed;
-    if (reader.ok() && !std::filesystem::is_regular_file(spec.wave_file, failed)) {
-      reader.fail_at(*reader.node("wave_file"), ErrorCode::file_not_found,
-                     "there is no file '" + spec.wave_file + "'");
-    }
+    if (reader.ok()) check_wave_file(reader, spec.wave_file);
   }
   spec.wave_frame = reader.integer("wave_frame", 0, kMinWaveFrame, kMaxWaveFrame);
   if (reader.node("wave_frame") != nullptr && reader.node("wave_file") == nullptr) {

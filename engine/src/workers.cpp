@@ -1,13 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "workers.h"
 
+#include <string>
+#include <system_error>
+
 #include "knotwave/base/fp_state.h"
 
 namespace knotwave::engine {
 
-Workers::Workers(int threads) {
-  pool_.reserve(static_cast<std::size_t>(threads - 1));
-  for (int t = 1; t < threads; ++t) pool_.emplace_back([this, t] { serve(t); });
+Result<std::unique_ptr<Workers>> Workers::start(int threads) {
+  std::unique_ptr<Workers> workers(new Workers);
+  workers->pool_.reserve(static_cast<std::size_t>(threads - 1));
+  try {
+    for (int t = 1; t < threads; ++t) {
+      workers->pool_.emplace_back([self = workers.get(), t] { self->serve(t); });
+    }
+  } catch (const std::system_error& fault) {
+    const int started = workers->threads();
+    return fail(ErrorCode::value_out_of_range,
+                "the number of threads is " + std::to_string(threads) + "; this system starts " +
+                    std::to_string(started) + " and no more: " + fault.code().message());
+  }
+  return workers;
 }
 
 Workers::~Workers() {

@@ -4,9 +4,11 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <thread>
 #include <vector>
 
+#include "knotwave/base/result.h"
 #include "knotwave/base/rt.h"
 
 namespace knotwave::engine {
@@ -15,8 +17,9 @@ class Workers {
  public:
   using Job = void (*)(void* context, int thread);
 
-  /// [control] `threads` in all, the caller of run() included: threads - 1 are started.
-  explicit Workers(int threads);
+  /// [control] `threads` in all, the caller of run() included: threads - 1 are started. Errors:
+  /// value_out_of_range (the system starts fewer; those are ended again).
+  static Result<std::unique_ptr<Workers>> start(int threads);
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
@@ -27,6 +30,7 @@ class Workers {
   void run(Job job, void* context) noexcept;
 
  private:
+  Workers() = default;
   void serve(int thread) noexcept;
 
   Job job_ = nullptr;

@@ -2,9 +2,14 @@
 #include "knotwave/engine/engine.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <system_error>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "scenes.h"
 #include "support/allocation_count.h"
@@ -86,6 +91,32 @@ TEST(Engine, RefusesWhatItCannotDo) {
     EXPECT_EQ(made.error().code, ErrorCode::value_out_of_range);
   }
   EXPECT_FALSE(Engine::create({}, nullptr));
+}
+
+/// In a process of its own that may start no thread: 0 when create() says so, else what is wrong.
+int refusal_without_threads(const BankProgram* bank) {
+  const rlimit none{1, 1};
+  const bool is_bound = ::setrlimit(RLIMIT_NPROC, &none) == 0 &&
+                        (::geteuid() != 0 || ::setuid(65534) == 0);  // no limit binds root
+  if (!is_bound) return 3;
+  const auto made = Engine::create({.threads = 8}, bank);
+  if (made) return 1;
+  const std::string text = "the number of threads is 8; this system starts 1 and no more: " +
+                           std::generic_category().message(EAGAIN);
+  const bool is_told =
+      made.error().code == ErrorCode::value_out_of_range && made.error().message == text;
+  return is_told ? 0 : 2;
+}
+
+TEST(Engine, ThreadsTheSystemDoesNotStartAreAnError) {
+  const auto bank = bank_from(kPlain);
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(refusal_without_threads(bank.get()));
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
+  if (WEXITSTATUS(status) == 3) GTEST_SKIP() << "no right to become a user with a limit";
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST(Engine, ProcessAllocatesNothing) {

@@ -50,7 +50,7 @@ struct EngineCounters {
 class Engine {
  public:
   /// [control] `bank` must outlive the engine or its replacement by an install_bank event.
-  /// Errors: value_out_of_range.
+  /// Errors: value_out_of_range (so many threads as the system does not start included).
   static Result<std::unique_ptr<Engine>> create(const EngineConfig& config,
                                                 const BankProgram* bank);
   ~Engine();

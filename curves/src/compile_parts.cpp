@@ -161,7 +161,7 @@ Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions&
       for (int c = 0; c < span.dim; ++c) out[at(c)] = coordinate_at(span, c, t);
     };
     if (!fit_pieces(target, span.u0, span.u1, limits, pieces)) {
-      return too_many_pieces(curve, pieces.max_error, options);
+      return too_many_pieces(curve, options);
     }
   }
   if (!(pieces.max_error <= options.max_error)) {
@@ -192,9 +192,13 @@ Error missed_bound(const NurbsCurve& curve, double error, double asked, const st
                                                  base::number_text(asked) + " was asked: " + why);
 }
 
-Error too_many_pieces(const NurbsCurve& curve, double error, const CompileOptions& options) {
-  return missed_bound(curve, error, options.max_error,
-                      std::to_string(options.max_pieces) + " pieces are not enough");
+Error too_many_pieces(const NurbsCurve& curve, const CompileOptions& options) {
+  return fail(ErrorCode::error_bound_missed,
+              "curve '" + curve.name() + "': " + std::to_string(options.max_pieces) +
+                  " pieces are not enough to follow its " + std::to_string(curve.point_count()) +
+                  " points of degree " + std::to_string(curve.degree()) + " within " +
+                  base::number_text(options.max_error) +
+                  ", which was asked; use fewer points or a lower degree");
 }
 
 }  // namespace knotwave::curves

@@ -30,7 +30,7 @@ Result<double> measured_error(const CurveProgram& program, const NurbsCurve& cur
 
 /// error_bound_missed, with both numbers.
 Error missed_bound(const NurbsCurve& curve, double error, double asked, const std::string& why);
-/// The same where max_pieces stopped the fit.
-Error too_many_pieces(const NurbsCurve& curve, double error, const CompileOptions& options);
+/// The same code where max_pieces stopped the fit; nobody knows the error then.
+Error too_many_pieces(const NurbsCurve& curve, const CompileOptions& options);
 
 }  // namespace knotwave::curves

@@ -163,14 +163,10 @@ bool fit_pieces(const FitTarget& target, double u_a, double u_b, const FitLimits
   Fitter fitter(target, limits);
   pieces.outputs = static_cast<int>(limits.low.size());
   std::vector<double> ends{u_b};  // right ends still to reach, the nearest last
-  double error = 0;
   while (!ends.empty()) {
-    if (pieces.count() + static_cast<int>(ends.size()) > limits.max_pieces) {
-      pieces.max_error = error;
-      return false;
-    }
+    if (pieces.count() + static_cast<int>(ends.size()) > limits.max_pieces) return false;
     const Piece piece = fitter.fit(u_a, ends.back(), pieces.right);
-    error = fitter.error(piece);
+    const double error = fitter.error(piece);
     const double middle = piece.u_a + 0.5 * (piece.u_b - piece.u_a);
     if (error > kAccepted * limits.max_error && middle > piece.u_a && middle < piece.u_b) {
       ends.push_back(middle);

@@ -275,7 +275,7 @@ Result<ProgramParts> inverted_parts(const NurbsCurve& curve, const CompileOption
       enough = fit_span(span, x_a, x_b, limits, pieces);
     }
     if (!enough || pieces.count() > options.max_pieces) {
-      return too_many_pieces(curve, pieces.max_error, options);
+      return too_many_pieces(curve, options);
     }
   }
   if (pieces.count() == 0) {

@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   const auto tables = dsp::WaveTables::create(set->curves.front());
   if (!tables) return complain(tables.error());
   std::printf("%d levels, the richest has %d harmonics, %zu bytes\n", tables->level_count(),
-              tables->level_harmonics(0), tables->memory_bytes());
+              tables->level_harmonics(tables->level_count() - 1), tables->memory_bytes());
 
   dsp::TableOscillator oscillator;
   oscillator.start(base::Phase{}, 0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // You learn: how to use a compiled curve inside an audio callback of your own.
 // Run:       build/release/bin/05_in_your_own_callback examples/curves/decay.toml
-// It plays:  one soft stroke a second for five seconds on the default device, or says there is
-// none. Next:      docs/architecture.md, and the header of whatever you need.
+// It plays:  one soft stroke a second for five seconds, or says that there is no sound device.
+// Next:      docs/architecture.md, and the header of whatever you need.
 #include <cstdint>
 #include <cstdio>
 #include <span>

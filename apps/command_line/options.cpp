@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -13,7 +14,9 @@
 
 #include "knotwave/base/suggest.h"
 
+#include "command_line/exit_codes.h"
 #include "command_line/messages.h"
+#include "command_line/output.h"
 #include "command_line/words.h"
 
 namespace knotwave::command_line {
@@ -152,7 +155,10 @@ std::optional<int> read_words(CLI::App& app, int argc, char** argv,
   try {
     if (fault.empty()) app.parse(argc, argv);
   } catch (const CLI::Success& done) {
-    return app.exit(done);
+    std::ostringstream text;
+    const int code = app.exit(done, text, text);
+    const int printed = print(app.get_name(), text.str());
+    return printed == kExitOk ? code : printed;
   } catch (const CLI::ParseError& error) {
     fault = error.what();
   }

@@ -6,6 +6,7 @@
 
 #include "command_line/exit_codes.h"
 #include "command_line/messages.h"
+#include "command_line/output.h"
 #include "options.h"
 #include "verbs.h"
 
@@ -17,11 +18,7 @@ using namespace knotwave::curve_app;
 
 int say(const Error& error) { return say_error("knotwave-curve", error); }
 
-int print(const std::string& text) {
-  const bool written =
-      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  return written ? kExitOk : kExitFailure;
-}
+int print(const std::string& text) { return command_line::print("knotwave-curve", text); }
 
 int print(const Result<std::string>& text) { return text ? print(*text) : say(text.error()); }
 
@@ -51,6 +48,6 @@ int main(int argc, char** argv) {
     return line.exit_code ? *line.exit_code : run(line.options);
   } catch (const std::bad_alloc&) {
     std::fputs("knotwave-curve: error: out of memory\n", stderr);
-    return kExitFailure;
+    return kExitTryAgain;
   }
 }

@@ -9,6 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "knotwave/base/file.h"
+
 #include "command_line/options.h"
 
 namespace knotwave::curve_app {
@@ -20,7 +22,8 @@ constexpr const char* kAbout =
 
 constexpr const char* kMore =
     "knotwave-curve COMMAND --help says more about each.\n"
-    "Exit codes: 0 done, 1 failure, 2 wrong usage.";
+    "Exit codes: 0 done, 1 failure, 2 wrong usage, 75 try again (disk full, out of\n"
+    "memory).";
 
 constexpr const char* kCheckExample = "Example:\n  knotwave-curve check examples/curves/*.toml";
 constexpr const char* kInfoExample =
@@ -132,7 +135,7 @@ std::string conflict(const CurveOptions& o) {
   if (o.verb == Verb::eval && o.at.empty() == (o.grid == 0)) {
     return o.at.empty() ? "where? --at LIST or --grid STEPS" : "--at and --grid exclude each other";
   }
-  const auto ends = [&o](std::string_view ending) { return o.output.ends_with(ending); };
+  const auto ends = [&o](std::string_view ending) { return base::has_ending(o.output, ending); };
   if (o.verb == Verb::plot && !o.output.empty() && !ends(".svg") && !ends(".png")) {
     return "--output: '" + o.output + "' ends neither in .svg nor in .png";
   }

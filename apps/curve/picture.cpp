@@ -44,7 +44,7 @@ Result<std::string> plot_text_or_file(const CurveOptions& options) {
         plot.width_px = options.width_px;
         plot.height_px = options.height_px;
         std::string bytes;
-        if (options.output.ends_with(".svg")) {
+        if (base::has_ending(options.output, ".svg")) {
           bytes = plot_svg(shape, plot);
         } else {
           const auto png = plot_png(shape, plot);

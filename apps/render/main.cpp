@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,9 +17,11 @@
 
 #include "command_line/exit_codes.h"
 #include "command_line/messages.h"
+#include "command_line/output.h"
 #include "missing_patches.h"
 #include "options.h"
 #include "output_places.h"
+#include "progress.h"
 #include "render_job.h"
 
 namespace {
@@ -32,8 +35,11 @@ constexpr std::size_t kWarningsShown = 20;
 /// Leaves no unfinished file behind, whatever the program is doing just now.
 extern "C" void stop_at_signal(int) {
   base::remove_unfinished_files();
-  constexpr char kMessage[] = "\nknotwave-render: interrupted; no unfinished file is left\n";
-  [[maybe_unused]] const auto count = ::write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
+  // The empty line keeps the progress bar readable where there is one.
+  constexpr std::string_view kMessage =
+      "\nknotwave-render: interrupted; no unfinished file is left\n";
+  const std::string_view text = kMessage.substr(is_progress_drawn() ? 0 : 1);
+  [[maybe_unused]] const auto count = ::write(STDERR_FILENO, text.data(), text.size());
   ::_exit(kExitInterrupted);
 }
 
@@ -43,6 +49,7 @@ void set_signals() {
 }
 
 int say(const Error& error) { return say_error("knotwave-render", error); }
+int print(const std::string& text) { return command_line::print("knotwave-render", text); }
 
 void say_warnings(const std::vector<std::string>& warnings) {
   for (std::size_t i = 0; i < warnings.size() && i < kWarningsShown; ++i) {
@@ -69,13 +76,19 @@ Result<std::optional<base::AtomicFile>> open_json(const RenderOptions& options) 
 int say_report(const RenderOptions& options, const RenderReport& report,
                std::optional<base::AtomicFile>& json_file) {
   const bool is_stdout_taken = options.output == "-" || options.json == "-";
-  std::fprintf(is_stdout_taken ? stderr : stdout, "%s\n", report_line(report).c_str());
-  if (options.json.empty()) return kExitOk;
+  const std::string line = report_line(report) + "\n";
+  int code = kExitOk;
+  if (is_stdout_taken) {
+    std::fputs(line.c_str(), stderr);
+  } else {
+    code = print(line);
+  }
+  if (options.json.empty()) return code;
   const std::string json = report_json(report);
-  if (!json_file) return std::fputs(json.c_str(), stdout) < 0 ? kExitFailure : kExitOk;
+  if (!json_file) return print(json);
   if (auto good = json_file->write(std::as_bytes(std::span(json))); !good) return say(good.error());
   const auto good = json_file->commit();
-  return good ? kExitOk : say(good.error());
+  return good ? code : say(good.error());
 }
 
 int check(const RenderOptions& options, const RenderInput& input) {
@@ -84,8 +97,7 @@ int check(const RenderOptions& options, const RenderInput& input) {
     warnings.push_back(input.score_name + ": warning: " + what);
   }
   if (!options.quiet) say_warnings(warnings);
-  std::printf("%s\n", check_line(options, input).c_str());
-  return kExitOk;
+  return print(check_line(options, input) + "\n");
 }
 
 int run(const RenderOptions& options) {
@@ -109,8 +121,7 @@ int main(int argc, char** argv) {
   set_signals();
   try {
     const CommandLine line = read_command_line(argc, argv);
-    const int code = line.exit_code ? *line.exit_code : run(line.options);
-    return std::fflush(stdout) == 0 ? code : kExitFailure;
+    return line.exit_code ? *line.exit_code : run(line.options);
   } catch (const std::bad_alloc&) {
     base::remove_unfinished_files();
     std::fputs("knotwave-render: error: out of memory\n", stderr);

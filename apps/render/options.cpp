@@ -7,6 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "knotwave/base/file.h"
+
 #include "command_line/options.h"
 #include "demo.h"
 
@@ -62,7 +64,7 @@ void add_input_and_output(CLI::App& app, RenderOptions& o) {
             "FILE|-"},
            o.output);
   add_text(app, {"--demo", "play a built-in demo instead: " + demo_names(), "NAME"}, o.demo);
-  add_flag(app, {"--check", "read everything, render nothing", ""}, o.check);
+  add_flag(app, {"--check", "read everything, render nothing; no output with it", ""}, o.check);
   add_text(app,
            {"--stems", "also write one file for each MIDI channel used, into this folder", "DIR"},
            o.stems);
@@ -79,7 +81,8 @@ void add_sound(CLI::App& app, RenderOptions& o) {
       {"--bits", "sample format: 16 or 24 bits, dithered, or 32-bit float (24 if not given)", ""},
       {std::begin(kSampleFormats), std::end(kSampleFormats)},
       [&o](std::size_t i) { o.format = kFormatOf[i]; });
-  add_number(app, {"--rate", "samples a second", "HZ"}, o.rate_hz, 8000, 768000);
+  add_number(app, {"--rate", "samples a second; FLAC holds 655350 at most", "HZ"}, o.rate_hz, 8000,
+             768000);
   add_checked(app,
               {"--tail",
                "how long to go on after the song's end: 0 to 3600 seconds, or auto: until silence, "
@@ -105,7 +108,8 @@ void add_speed(CLI::App& app, RenderOptions& o) {
 }
 
 bool is_midi_name(std::string_view name) {
-  return name.ends_with(".mid") || name.ends_with(".midi") || name.ends_with(".rmi");
+  return base::has_ending(name, ".mid") || base::has_ending(name, ".midi") ||
+         base::has_ending(name, ".rmi");
 }
 
 /// What is wrong with PATCH and SCORE; empty when nothing is.
@@ -124,20 +128,34 @@ std::string input_conflict(const RenderOptions& o) {
   return {};
 }
 
+/// What is wrong with outputs beside --check, which makes none; empty when nothing is.
+std::string check_conflict(const RenderOptions& o) {
+  const std::pair<const char*, const std::string&> outputs[] = {
+      {"--output", o.output}, {"--json", o.json}, {"--stems", o.stems}};
+  for (const auto& [name, value] : outputs) {
+    if (value.empty()) continue;
+    return "--check renders nothing; leave out " + std::string(name) + " '" + value + "'";
+  }
+  return {};
+}
+
 /// What is wrong with where the sound shall go; empty when nothing is.
 std::string output_conflict(const RenderOptions& o) {
-  if (o.output.empty()) {
-    return o.check ? "" : "where to? -o FILE.wav, -o FILE.flac, -o - or --check";
-  }
+  if (o.check) return check_conflict(o);
+  if (o.output.empty()) return "where to? -o FILE.wav, -o FILE.flac, -o - or --check";
   if (o.output == "-") {
     return o.json == "-" ? "-o - and --json - cannot share standard output" : "";
   }
-  const bool is_flac = o.output.ends_with(".flac");
-  if (!is_flac && !o.output.ends_with(".wav")) {
+  const bool is_flac = base::has_ending(o.output, ".flac");
+  if (!is_flac && !base::has_ending(o.output, ".wav")) {
     return "--output: '" + o.output + "' ends neither in .wav nor in .flac";
   }
   if (is_flac && o.format == io::SampleFormat::float32) {
     return "FLAC holds 16 or 24 bits, not 32-bit float: use --bits 24 or a name that ends in .wav";
+  }
+  if (is_flac && !io::flac_holds_rate(o.rate_hz)) {
+    return io::kFlacRates + std::string(", not ") + std::to_string(o.rate_hz) +
+           " Hz: use another --rate or a name that ends in .wav";
   }
   return {};
 }

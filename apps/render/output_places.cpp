@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "knotwave/base/file.h"
+
 #include "event_feed.h"
 
 namespace knotwave::render {
@@ -13,7 +15,7 @@ namespace fs = std::filesystem;
 std::string stem_path(const RenderOptions& options, int channel) {
   const std::string number = std::to_string(channel + 1);
   const std::string name = (number.size() < 2 ? "channel-0" : "channel-") + number;
-  const std::string ending = fs::path(options.output).extension() == ".flac" ? ".flac" : ".wav";
+  const std::string ending = base::has_ending(options.output, ".flac") ? ".flac" : ".wav";
   return (fs::path(options.stems) / (name + ending)).string();
 }
 

@@ -2,6 +2,7 @@
 #include "progress.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 
@@ -12,6 +13,9 @@ namespace {
 
 constexpr int kBarCells = 30;
 constexpr double kLongestLeftSeconds = 99 * 3600;
+
+std::atomic<bool> is_drawn{false};  ///< of the one bar a program has
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler reads it");
 
 std::string bar(double share) {
   const int cells = static_cast<int>(share * kBarCells);
@@ -38,8 +42,10 @@ std::string progress_line(double done_s, double total_s, double elapsed_s) {
 
 Progress::Progress(bool is_wanted) : is_on_(is_wanted && ::isatty(STDERR_FILENO) == 1) {}
 
+bool is_progress_drawn() noexcept { return is_drawn.load(std::memory_order_relaxed); }
+
 Progress::~Progress() {
-  if (is_drawn_) std::fputs("\r\x1b[K", stderr);
+  if (is_drawn.exchange(false)) std::fputs("\r\x1b[K", stderr);
 }
 
 void Progress::show(double done_s, double total_s) {
@@ -49,7 +55,7 @@ void Progress::show(double done_s, double total_s) {
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
   std::fprintf(stderr, "\r%s\x1b[K", progress_line(done_s, total_s, elapsed_s).c_str());
   std::fflush(stderr);
-  is_drawn_ = true;
+  is_drawn.store(true, std::memory_order_relaxed);
 }
 
 }  // namespace knotwave::render

@@ -9,6 +9,9 @@ namespace knotwave::render {
 /// `[=====>     ]  45 %  13.5 of 30.0 s  41.2x  0:00 left`, without line end.
 std::string progress_line(double done_s, double total_s, double elapsed_s);
 
+/// Whether a bar stands on the line just now. Async-signal-safe: for signal handlers.
+bool is_progress_drawn() noexcept;
+
 class Progress {
  public:
   /// Draws on standard error if that is a terminal and `is_wanted`.
@@ -24,7 +27,6 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   bool is_on_;
-  bool is_drawn_ = false;
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_ = start_;
 };

@@ -14,13 +14,10 @@
 namespace knotwave::render {
 namespace {
 
+using command_line::json_string;
+
 std::string json_number(double value, int decimals) {
   return std::isfinite(value) ? fixed(value, decimals) : "null";
-}
-
-/// Names of files and texts of songs may hold any bytes.
-std::string json_text(std::string_view text) {
-  return command_line::json_string(io::printable(text, 4096));
 }
 
 /// An object being written, two blanks a level.
@@ -46,11 +43,11 @@ std::string json_list(const std::vector<std::string>& items) {
 
 std::string json_stem(const StemReport& stem) {
   JsonObject object(2);
-  object.add("path", json_text(stem.path));
+  object.add("path", json_string(stem.path));
   object.add("channel", std::to_string(stem.channel));
   object.add("peak_dbfs", json_number(stem.peak_dbfs, 2));
-  object.add("sha256", json_text(stem.sha256));
-  object.add("sha256_file", json_text(stem.sha256_file));
+  object.add("sha256", json_string(stem.sha256));
+  object.add("sha256_file", json_string(stem.sha256_file));
   return object.text();
 }
 
@@ -78,10 +75,10 @@ std::string report_line(const RenderReport& r) {
 
 std::string report_json(const RenderReport& r) {
   std::vector<std::string> warnings, stems;
-  for (const auto& warning : r.warnings) warnings.push_back(json_text(warning));
+  for (const auto& warning : r.warnings) warnings.push_back(json_string(warning));
   for (const auto& stem : r.stems) stems.push_back(json_stem(stem));
   JsonObject object(0);
-  object.add("path", json_text(r.path));
+  object.add("path", json_string(r.path));
   object.add("seconds", fixed(r.seconds(), 6));
   object.add("frames", std::to_string(r.frames));
   object.add("rate_hz", std::to_string(r.rate_hz));
@@ -89,8 +86,8 @@ std::string report_json(const RenderReport& r) {
   object.add("peak_dbfs", json_number(r.peak_dbfs, 2));
   object.add("rms_dbfs", json_number(r.rms_dbfs, 2));
   object.add("seed", std::to_string(r.seed));
-  object.add("sha256", json_text(r.sha256));
-  object.add("sha256_file", r.sha256_file.empty() ? "null" : json_text(r.sha256_file));
+  object.add("sha256", json_string(r.sha256));
+  object.add("sha256_file", r.sha256_file.empty() ? "null" : json_string(r.sha256_file));
   object.add("realtime_factor", json_number(r.realtime_factor, 2));
   object.add("voices_peak", std::to_string(r.voices_peak));
   object.add("voices_stolen", std::to_string(r.voices_stolen));

@@ -114,6 +114,19 @@ TEST(RenderCommandLine, WordsThatDoNotGoTogetherAreTold) {
            "--output: 'a.mp3' ends neither in .wav nor in .flac"},
           {{"a.toml", "a.mid", "-o", "a.flac", "--bits", "32f"},
            "FLAC holds 16 or 24 bits, not 32-bit float: use --bits 24 or a name that ends in .wav"},
+          {render_words({"--check"}), "--check renders nothing; leave out --output 'a.wav'"},
+          {{"a.toml", "a.mid", "--check", "--json", "a.json"},
+           "--check renders nothing; leave out --json 'a.json'"},
+          {{"a.toml", "a.mid", "--check", "--stems", "stems"},
+           "--check renders nothing; leave out --stems 'stems'"},
+          {{"a.toml", "a.mid", "-o", "a.flac", "--rate", "768000"},
+           "FLAC holds rates to 65535 Hz, and multiples of 10 to 655350 Hz, not 768000 Hz: use "
+           "another --rate or a name that ends in .wav"},
+          {{"a.toml", "a.mid", "-o", "a.FLAC", "--rate", "65536"},
+           "FLAC holds rates to 65535 Hz, and multiples of 10 to 655350 Hz, not 65536 Hz: use "
+           "another --rate or a name that ends in .wav"},
+          {{"a.MID", "a.toml", "-o", "a.wav"},
+           "the patch comes before the score, but 'a.MID' is named as a MIDI file"},
           {{"a.toml", "a.mid", "-o", "-", "--json", "-"},
            "-o - and --json - cannot share standard output"},
           {{"a.toml", "--demo", "groove", "-o", "a.wav"},
@@ -133,6 +146,7 @@ TEST(CurveCommandLine, AWrongCommandIsNamedWithTheNearest) {
           {{"PLOT", "a.toml"}, "unknown command 'PLOT'; did you mean 'plot'?"},
           {{"help"}, "unknown command 'help'; did you mean '--help'?"},
           {{"a.toml"}, "unknown command 'a.toml'; the commands are check, info, eval and plot"},
+          {{"split"}, "unknown command 'split'; the commands are check, info, eval and plot"},
           {{"info"}, "which curve? a FILE is needed, or FILE#NAME"},
           {{"info", "a.toml", "b.toml"}, "'b.toml' is one word too many: FILE is given already"},
       });

@@ -234,6 +234,8 @@ TEST_F(CurveApp, PlotWritesTheFileItsEndingAsksForOrText) {
   EXPECT_EQ(run({"plot", file_ + "#sheet", "-o", png, "--size", "400x300"}).out,
             png + ": sheet, 400 x 300\n");
   EXPECT_THAT(*base::read_file(png, 1 << 24), StartsWith("\x89PNG"));
+  ASSERT_EQ(run({"plot", file_ + "#arc", "-o", folder_.file("b.SVG")}).exit_code, 0);
+  EXPECT_EQ(*base::read_file(folder_.file("b.SVG"), 1 << 24), *base::read_file(svg, 1 << 24));
   EXPECT_THAT(run({"plot", file_ + "#wave"}).out,
               StartsWith("wave  degree 3, 4 points, periodic\n"));
 }
@@ -274,6 +276,11 @@ TEST_F(CurveApp, FailuresEndWith1AndNameTheFile) {
   };
   says({"eval", file_ + "#ark", "--at", "0"},
        file_ + ": error: there is no 'ark'; did you mean 'arc'?");
+  const std::string decays = KNOTWAVE_SOURCE_DIR "/examples/curves/decay.toml";
+  says({"info", decays + "#deca"},
+       decays +
+           ": error: there is no 'deca'; did you mean 'decay60', 'decay60_light' or "
+           "'decay60_unweighted'?");
   says({"check", file_ + "#arc"},
        file_ + "#arc: error: no such file; check reads whole files: leave out '#arc'");
   says({"eval", file_ + "#nothing", "--at", "0"},

@@ -14,6 +14,10 @@
 #include "apps/render_scene.h"
 #include "support/seed.h"
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define KNOTWAVE_SANITIZED 1
+#endif
+
 namespace knotwave::render {
 namespace {
 
@@ -91,6 +95,57 @@ TEST_F(RenderFaults, AFullPipeIsCode75) {
   const auto closed =
       support::run_program({"/bin/sh", "-c", command + " | head -c 100 >/dev/null"}, options);
   EXPECT_THAT(closed.err, HasSubstr("its reader has gone"));
+}
+
+TEST_F(RenderFaults, WhatCannotBePrintedIsToldByEveryProgram) {
+  write("curve.toml", "format = 1\nkind = \"curve\"\n[curves.a]\ndegree = 1\npoints = [1, 0]\n");
+  support::ProgramOptions options;
+  options.folder = folder_.path();
+  const std::string render = "knotwave-render small.toml small.mid ";
+  for (const std::string& command :
+       {render + "-o a.wav", render + "-o b.wav --json -", render + "-o c.wav --json c.json",
+        render + "--check", std::string("knotwave-render --help"),
+        std::string("knotwave-render --version"), std::string("knotwave-curve --help"),
+        std::string("knotwave-curve eval --help"), std::string("knotwave-curve check curve.toml"),
+        std::string("knotwave-curve info curve.toml"),
+        std::string("knotwave-curve eval curve.toml --grid 4"),
+        std::string("knotwave-curve plot curve.toml"),
+        std::string("knotwave-curve plot curve.toml -o a.svg")}) {
+    const auto done = support::run_program(
+        {"/bin/sh", "-c", KNOTWAVE_BIN_DIR "/" + command + " > /dev/full"}, options);
+    const std::string program = command.substr(0, command.find(' '));
+    EXPECT_EQ(done.exit_code, 75) << command;
+    EXPECT_THAT(done.err, testing::EndsWith(program + ": error: cannot write to standard output: " +
+                                            std::strerror(ENOSPC) + "\n"))
+        << command;
+  }
+  EXPECT_THAT(read("c.json"), HasSubstr("\"path\": \"c.wav\"")) << "the file has its place";
+}
+
+#ifndef KNOTWAVE_SANITIZED  // a sanitizer needs terabytes of addresses
+TEST_F(RenderFaults, ThreadsThatCannotBeStartedAreToldAndNothingIsLeft) {
+  support::ProgramOptions options;
+  options.max_address_bytes = 100 << 20;  // 63 stacks of 2 MiB or more do not fit
+  const auto done =
+      run({"small.toml", "small.mid", "-o", "out.wav", "--json", "out.json", "--threads", "64"},
+          options);
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_THAT(done.err,
+              testing::MatchesRegex("knotwave-render: error: the number of threads is 64; "
+                                    "this system starts [0-9]+ and no more: .*\n"));
+  EXPECT_THAT(files_with("out"), IsEmpty());
+  EXPECT_EQ(run({"small.toml", "small.mid", "-o", "out.wav"}, options).exit_code, 0);
+}
+#endif
+
+TEST_F(RenderFaults, AnInterruptIsOneLineWhereThereIsNoBar) {
+  support::ProgramRun done;
+  support::ProgramOptions options;
+  for (double after_s = 0.5; after_s < 20 && done.err.empty(); after_s *= 2) {
+    options.interrupt_after_s = after_s;
+    done = run(long_render(), options);
+  }
+  EXPECT_EQ(done.err, "knotwave-render: interrupted; no unfinished file is left\n");
 }
 
 TEST_F(RenderFaults, AReadOnlyFolderIsNamed) {

@@ -195,6 +195,47 @@ TEST_F(RenderProgram, AFixedTailIsExactAndAutoEndsInSilence) {
   EXPECT_EQ(samples[samples.size() - 1], 0.0f);
 }
 
+TEST_F(RenderProgram, AScoreWithoutLengthBecomesAValidFile) {
+  io::Song song;
+  song.track_count = 1;
+  song.time_base.ticks_per_quarter = 480;
+  write_song("empty.mid", song);
+  for (const char* name : {"z.flac", "z.wav"}) {
+    const auto done = run({"small.toml", "empty.mid", "-o", name, "--tail", "0"});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    const std::string bytes = read(name);
+    EXPECT_GE(bytes.size(), 42u) << name;
+    EXPECT_THAT(bytes.substr(0, 4), testing::AnyOf("fLaC", "RIFF"));
+  }
+}
+
+TEST_F(RenderProgram, EndingsCountInAnyCase) {
+  for (const char* name : {"x.WAV", "x.Flac"}) {
+    render({"-o", name, "--stems", std::string(name) + ".stems"});
+    EXPECT_TRUE(io::read_sound(file(name)).has_value()) << name;
+  }
+  EXPECT_EQ(read("x.Flac.stems/channel-01.flac").substr(0, 4), "fLaC");
+}
+
+TEST_F(RenderProgram, ANameMayBeAsLongAsTheFileSystemAllows) {
+  const std::string name = std::string(250, 'n') + ".wav";
+  render({"-o", name});
+  EXPECT_TRUE(io::read_sound(file(name)).has_value());
+}
+
+TEST_F(RenderProgram, AWaveOfMorePiecesThanThereMayBeIsToldSo) {
+  std::string points;
+  for (int i = 0; i < 4096; ++i) points += std::to_string(i * 2557 % 4096) + ",";
+  std::string patch = kSmallPatch;
+  patch.replace(patch.find("\"sine\""), 6, "\"long\"");
+  write("long.toml",
+        patch + "[curves.long]\nperiodic = true\ndegree = 15\npoints = [" + points + "]\n");
+  const auto done = run({"--check", "long.toml", "small.mid"});
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_THAT(done.err, HasSubstr("4096 pieces are not enough to follow its "));
+  EXPECT_THAT(done.err, HasSubstr("use fewer points or a lower degree"));
+}
+
 TEST_F(RenderProgram, ARateIsKept) {
   render({"-o", "out.wav", "--rate", "44100", "--tail", "0"});
   const auto sound = io::read_sound(file("out.wav"));

@@ -73,7 +73,8 @@ TEST(RenderReport, JsonHasItsKeysInOrder) {
 TEST(RenderReport, TextIsSafeInJsonAndOnATerminal) {
   RenderReport report = example();
   report.path = "a\"b\\c\x1b[31m\n.wav";
-  EXPECT_THAT(report_json(report), HasSubstr("\"path\": \"a\\\"b\\\\c?[31m?.wav\""));
+  EXPECT_THAT(report_json(report), HasSubstr("\"path\": \"a\\\"b\\\\c\\u001b[31m\\n.wav\""))
+      << "nothing is lost";
   EXPECT_THAT(report_line(report), HasSubstr("c?[31m?.wav: "));
 }
 

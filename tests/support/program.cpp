@@ -29,10 +29,12 @@ double seconds_since(Clock::time_point start) {
   dup2(out, 1);
   dup2(err, 2);
   for (int fd = 3; fd < 64; ++fd) close(fd);
-  if (options.max_file_bytes >= 0) {
-    const rlimit limit{rlim_t(options.max_file_bytes), rlim_t(options.max_file_bytes)};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
+  const auto set_limit = [](auto resource, long bytes) {
+    const rlimit limit{rlim_t(bytes), rlim_t(bytes)};
+    if (bytes >= 0) setrlimit(resource, &limit);
+  };
+  set_limit(RLIMIT_FSIZE, options.max_file_bytes);
+  set_limit(RLIMIT_AS, options.max_address_bytes);
   if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) _exit(126);
   std::string program = argv[0];
   if (program.find('/') == std::string::npos) program = std::string(KNOTWAVE_BIN_DIR "/") + program;

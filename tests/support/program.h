@@ -23,6 +23,7 @@ struct ProgramOptions {
   double interrupt_after_s = 0;  ///< > 0: SIGINT after that time
   double kill_after_s = 0;       ///< > 0: SIGKILL after that time
   long max_file_bytes = -1;      ///< >= 0: RLIMIT_FSIZE
+  long max_address_bytes = -1;   ///< >= 0: RLIMIT_AS
   /// Takes standard output as it comes instead of keeping it.
   std::function<void(std::span<const char>)> on_output;
 };

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// What our programs print as their result.
+#pragma once
+#include <string_view>
+
+namespace knotwave::command_line {
+
+/// `text` on standard output. Where that fails (a full disk, a reader that has gone) the reason is
+/// told on standard error. Returns the exit code.
+int print(std::string_view program, std::string_view text);
+
+}  // namespace knotwave::command_line

@@ -2,11 +2,13 @@
 // arc_length() and parameter_at_length() of calculus.h.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "knotwave/base/document.h"
 #include "knotwave/base/index.h"
 #include "knotwave/curves/calculus.h"
 
+#include "chords.h"
 #include "coordinate_pieces.h"
 #include "quadrature.h"
 #include "spec_checks.h"
@@ -14,25 +16,15 @@
 namespace knotwave::curves {
 namespace {
 
-using base::index_of;
 using base::number_text;
 
 /// Parts shorter than this of the control polygon are not looked into.
 constexpr double kNegligible = 0x1p-60;
 
 double polygon_length(const NurbsCurve& curve) {
-  const std::size_t dim = index_of(curve.dim());
-  const auto points = curve.points();
-  double sum = dim == 1 ? curve.u_max() - curve.u_min() : 0;
-  for (std::size_t i = dim; i < points.size(); i += dim) {
-    double square = 0;
-    for (std::size_t c = 0; c < dim; ++c) {
-      const double leg = points[i + c] - points[i - dim + c];
-      square += leg * leg;
-    }
-    sum += std::sqrt(square);
-  }
-  return sum;
+  const std::vector<double> legs = chords(curve.points(), curve.dim());
+  return std::accumulate(legs.begin(), legs.end(),
+                         curve.dim() == 1 ? curve.u_max() - curve.u_min() : 0.0);
 }
 
 /// A span with the speed of the path on it.
@@ -55,6 +47,7 @@ Bernstein slope_top(const CoordinatePiece& piece, bool rational) {
 std::vector<PathSpan> path_spans(const NurbsCurve& curve, double low, double high) {
   const double negligible = kNegligible * polygon_length(curve);
   std::vector<std::vector<CoordinatePiece>> coordinates;
+  coordinates.reserve(base::index_of(curve.dim()));
   for (int c = 0; c < curve.dim(); ++c) coordinates.push_back(coordinate_pieces(curve, c));
   std::vector<PathSpan> spans;
   for (std::size_t i = 0; i < coordinates[0].size(); ++i) {

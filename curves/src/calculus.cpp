@@ -96,7 +96,7 @@ Result<double> integral(const NurbsCurve& curve, double u_a, double u_b, int coo
 }
 
 double curvature(const NurbsCurve& curve, double u, Side side) noexcept {
-  std::array<double, 3 * kMaxDim> at{};
+  std::array<double, index_of(3 * kMaxDim)> at{};
   curve.derivatives(u, 2, side, at);
   const auto dim = index_of(curve.dim());
   const double* first = at.data() + dim;

@@ -8,6 +8,7 @@
 #include "knotwave/base/elementary.h"
 #include "knotwave/base/index.h"
 
+#include "chords.h"
 #include "fitted_curve.h"
 #include "spline_fit.h"
 
@@ -70,20 +71,14 @@ Result<std::vector<double>> spaced_parameters(const std::string& what,
                                               std::span<const double> points, int dim,
                                               Spacing spacing) {
   std::vector<double> parameters{0};
-  const std::size_t size = index_of(dim);
-  for (std::size_t i = size; i < points.size(); i += size) {
-    double square = 0;
-    for (std::size_t c = 0; c < size; ++c) {
-      const double along = points[i + c] - points[i - size + c];
-      square += along * along;
-    }
-    const double chord = std::sqrt(square);
+  for (const double chord : chords(points, dim)) {
     const double step = spacing == Spacing::uniform ? 1
                         : spacing == Spacing::chord ? chord
                                                     : std::sqrt(chord);
     if (!(step > 0)) {
-      return fail(ErrorCode::knots_decrease, what + ": points " + std::to_string(i / size - 1) +
-                                                 " and " + std::to_string(i / size) +
+      return fail(ErrorCode::knots_decrease, what + ": points " +
+                                                 std::to_string(parameters.size() - 1) + " and " +
+                                                 std::to_string(parameters.size()) +
                                                  " are at the same place; only uniform spacing "
                                                  "has a step between them");
     }

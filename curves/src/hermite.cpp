@@ -7,6 +7,7 @@
 #include "knotwave/base/index.h"
 #include "knotwave/curves/shapes.h"
 
+#include "chords.h"
 #include "double_double.h"
 
 namespace knotwave::curves {
@@ -55,14 +56,7 @@ Result<void> check_hermite(std::span<const double> times, std::span<const double
 // Time steps between neighbours: distances to the power alpha.
 std::vector<double> steps_between(std::span<const double> points, int dim, double alpha) {
   std::vector<double> steps;
-  const std::size_t size = index_of(dim);
-  for (std::size_t i = size; i < points.size(); i += size) {
-    double square = 0;
-    for (std::size_t c = 0; c < size; ++c) {
-      const double along = points[i + c] - points[i - size + c];
-      square += along * along;
-    }
-    const double distance = std::sqrt(square);
+  for (const double distance : chords(points, dim)) {
     if (alpha == 0) {
       steps.push_back(1);
     } else if (alpha == 0.5) {

@@ -24,12 +24,6 @@ using curves::NurbsCurve;
 using curves::Side;
 using testing::ElementsAre;
 
-NurbsCurve plain_curve(Dice& dice, int most_degree) {
-  CurveSpec spec = random_spec(dice, 1 + dice.below(most_degree));
-  spec.weights.clear();
-  return made(std::move(spec));
-}
-
 TEST(Antiderivative, OfAFrequencyIsItsPhase) {
   // 100 to 300 Hz in 2 seconds: 400 cycles.
   const auto phase = antiderivative(scalar(1, {100, 300}, {0, 0, 2, 2}), 0.25);

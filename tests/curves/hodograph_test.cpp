@@ -24,12 +24,6 @@ using curves::Side;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-NurbsCurve plain_curve(Dice& dice, int most_degree) {
-  CurveSpec spec = random_spec(dice, 1 + dice.below(most_degree));
-  spec.weights.clear();
-  return made(std::move(spec));
-}
-
 TEST(Hodograph, OfASegmentIsTheDifferencesOfItsPoints) {
   const auto slope = hodograph(scalar(3, {0, 1, 3, 2}));
   ASSERT_TRUE(slope);

@@ -235,6 +235,22 @@ TEST(MovingCurve, AnySplitOfABlockGivesTheSameBitsAndSoDoesEachSampleAlone) {
   }
 }
 
+TEST(MovingCurve, EveryVectorUnitGivesTheSameBits) {
+  Dice dice(support::test_seed());
+  for (const int degree : {1, 2, 3, 4, 5, 6, 7}) {
+    const NurbsCurve curve = rising_curve(dice, degree, degree % 2 == 1);
+    const MovingCurve live = moving(curve);
+    constexpr std::size_t kCount = 61;
+    const Motion motion(dice, curve, kCount);
+    std::vector<double> best(kCount), baseline(kCount);
+    live.render(motion.times, motion.pointers, best);
+    curves::set_simd_level(curves::SimdLevel::baseline);
+    live.render(motion.times, motion.pointers, baseline);
+    curves::set_simd_level(curves::SimdLevel::best);
+    EXPECT_EQ(best, baseline) << degree;
+  }
+}
+
 TEST(MovingCurve, NeverAllocates) {
   Dice dice(support::test_seed());
   const NurbsCurve curve = rising_curve(dice, 3, true);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include <gtest/gtest.h>
+#include "example_curve.h"
 
 namespace knotwave::test {
 namespace {
@@ -86,10 +86,12 @@ CurveSpec random_spec(Dice& dice, int degree) {
   return spec;
 }
 
-curves::NurbsCurve random_curve(Dice& dice, int degree) {
-  auto curve = curves::NurbsCurve::create(random_spec(dice, degree));
-  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
-  return std::move(*curve);
+curves::NurbsCurve random_curve(Dice& dice, int degree) { return made(random_spec(dice, degree)); }
+
+curves::NurbsCurve plain_curve(Dice& dice, int most_degree) {
+  CurveSpec spec = random_spec(dice, 1 + dice.below(most_degree));
+  spec.weights.clear();
+  return made(std::move(spec));
 }
 
 double random_parameter(Dice& dice, const curves::NurbsCurve& curve) {

@@ -26,6 +26,8 @@ class Dice {
 /// A valid spec of degree `degree`, or of any degree when it is 0.
 curves::CurveSpec random_spec(Dice& dice, int degree = 0);
 curves::NurbsCurve random_curve(Dice& dice, int degree = 0);
+/// Without weights, degree 1..most_degree.
+curves::NurbsCurve plain_curve(Dice& dice, int most_degree);
 
 /// A parameter to try: anywhere, on a knot, beside a knot, at an end.
 double random_parameter(Dice& dice, const curves::NurbsCurve& curve);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "knotwave/curves/compile.h"
+#include "knotwave/curves/moving_curve.h"
 #include "knotwave/curves/nurbs_curve.h"
 
 #include "bits.h"
@@ -56,10 +57,24 @@ void print_functions() {
                  {.degree = 15, .points = {0, 1, -1, 2, 0, 3, 1, -2, 0.5, 0.1, 1, 2, -1, 4, 0, 1}});
 }
 
+/// Time inversion while the handles move, all of them as far as they may.
+void print_moving() {
+  const auto moving = curves::MovingCurve::create(
+      make({.degree = 3, .dim = 2, .points = {0, 0, 0, 0, 1, 1, 1, 1}}));
+  std::vector<double> values;
+  for (int i = 0; i < kCount; ++i) {
+    const double a = spread(0, 1, i * 7 % kCount, kCount), b = spread(1, 0, i, kCount);
+    const double points[] = {0, 0, a, 1 - b, b, a, 1, 1};
+    values.push_back(moving->at(spread(0, 1, i * 31 % kCount, kCount), points));
+  }
+  print("moving_ease", values);
+}
+
 }  // namespace
 
 void curves() {
   print_functions();
+  print_moving();
   print_curve("curve_decay60", {.degree = 4,
                                 .points = {1, 0.15962, 0.030761, 0.0058833, 0.001},
                                 .weights = {0.033544, 0.068924, 0.15018, 0.35327, 1}});

@@ -185,6 +185,8 @@ TEST(MovingCurve, AtRestItIsTheCompiledCurveWhateverDegreeKnotsAndWeights) {
 TEST(MovingCurve, HalvesAsOftenAsDegreeAndWeightsAskFor) {
   EXPECT_EQ(moving_cubic().halvings(), 26);
   EXPECT_EQ(moving(timed(1, {0, 0, 1, 1})).halvings(), 26);
+  EXPECT_EQ(moving(timed(4, std::vector<double>(10, 0.0))).halvings(), 27);
+  EXPECT_EQ(moving(timed(6, std::vector<double>(14, 0.0))).halvings(), 27);
   EXPECT_EQ(moving(timed(7, std::vector<double>(16, 0.0))).halvings(), 28);
   EXPECT_EQ(moving(timed(3, {0, 0, 0, 0, 1, 1, 1, 1}, {}, {1, 16, 1, 1})).halvings(), 30);
 }

@@ -23,7 +23,7 @@ struct MovingBlock;  // src/moving_kernel.h
 /// Error: the y returned is at most 2^-24 R off the curve's value at a time within 2^-50 X of
 /// the one asked for, plus 2^-50 Y of rounding. R is the range of the y of the points at that
 /// sample, X and Y the largest |x| (the time counts too) and |y|. N = halvings() follows from the
-/// degree and the weights: 26 up to degree 3 without weights, 28 up to degree 7.
+/// degree and the weights: without weights 26 up to degree 3, 27 to 6, 28 for 7.
 /// What x has to do: never go back. regularize_handles() says how far handles may reach, points in
 /// rising x always do; where x goes back all the same, y is that of one of the times' places, or of
 /// an end of a span.

@@ -12,6 +12,9 @@ constexpr std::size_t kChunk = 64;
 // The brake, for 0 <= x < 1: value 0 and slope 1 at 0, dies away with two derivatives. Its largest
 // value, at x = 1/4, is kBrakePeak.
 constexpr double kBrakePeak = 27.0 / 256;
+/// How its length is looked for: steps of bisection, places looked at, and what may lie between.
+constexpr int kBrakeSteps = 5, kBrakePlaces = 16;
+constexpr double kBrakeMargin = 63.0 / 64;
 constexpr double brake(double x) { return x * (1 - x) * (1 - x) * (1 - x); }
 constexpr double brake_slope(double x) { return (1 - x) * (1 - x) * (1 - 4 * x); }
 
@@ -101,10 +104,13 @@ void Envelope::join(const EnvelopeProgram& program, const curves::JoinProgram& s
                 ? section.join_from(value, slope, from.value, wanted)
                 : section.join_c0_from(value, from.value);
   if (deltas_.limited) ++limited_joins_;
-  const bool lacks = section.moves_p1 ? deltas_.limited : !section.is_vertical;
+  const bool is_level = deltas_.limited && section.moves_p1;
+  if (is_level) deltas_ = section.join_from(value, slope, from.value, 0);
+  const bool lacks = is_level || !(section.moves_p1 || section.is_vertical);
   const double kept = slope + deltas_.dp0 * section.basis.slope_at_u(section.u_join, 0) +
                       deltas_.dp1 * section.basis.slope_at_u(section.u_join, 1);
-  set_brake(section, from.value, kept, lacks ? wanted : kept, section.u_basis_end - section.u_join);
+  const double longest = section.u_basis_end - section.u_join;
+  set_brake({section, from.value, kept, is_level}, lacks ? wanted : kept, longest);
   start(section, time);
 }
 
@@ -116,7 +122,8 @@ void Envelope::let_go(const EnvelopeProgram& program, const Now& from,
   const double longest =
       std::min((program.program().u_max() - section.u_join) / kRoundedPart, rounding_u_);
   deltas_ = {};
-  set_brake(section, from.value, slope, 0, std::min(longest, section.u_basis_end - section.u_join));
+  set_brake({section, from.value, slope, false}, 0,
+            std::min(longest, section.u_basis_end - section.u_join));
   start(section, time);
 }
 
@@ -126,25 +133,44 @@ void Envelope::start(const curves::JoinProgram& section, base::SampleTime time) 
   age_ = place_;
 }
 
-// The slope of the section is `kept`; what lacks to `wanted` is played by a brake of such a length
-// that the sum stays inside the hull. With room r from the value to the hull, the section stays
-// r B0(u) away from it, because its other points are inside and those that follow keep their share
-// of r; and B0(u) >= 1 - f u with f its slope where it is convex, or 1 / its length where it is
-// not. So a brake of peak b that ends by u with b + r f u <= r is safe. Without weights it always
-// is; otherwise the clamp in rounded() has the last word.
-void Envelope::set_brake(const curves::JoinProgram& section, double value, double kept,
-                         double wanted, double longest) KNOTWAVE_RT {
-  brake_slope_ = wanted - kept;
+// What lacks from the section's slope to `wanted` is played by a brake of such a length that the
+// sum stays inside the hull. With room r from the value to the hull, the section stays r B0 away
+// from it, because its other points are inside and those that follow keep their share of r; r (B0 +
+// B1) where P1 is level with P0. And B0(u) >= 1 - f u with f its slope where it is convex, or 1 /
+// its length where it is not. So a brake of peak b that ends by u with b + r f u <= r is safe; from
+// there on a longer one, up to a peak of r, is looked for. Without weights the first always is
+// safe; otherwise the clamp in rounded() has the last word.
+void Envelope::set_brake(const Joined& joined, double wanted, double longest) KNOTWAVE_RT {
+  const curves::JoinProgram& section = joined.section;
+  brake_slope_ = wanted - joined.slope;
   brake_u_ = longest;
-  const double room = brake_slope_ > 0 ? section.high - value : value - section.low;
+  const double room = brake_slope_ > 0 ? section.high - joined.value : joined.value - section.low;
+  const double steepness = std::abs(brake_slope_);
   const double fall = std::max(-section.basis.slope_at_u(section.u_join, 0),
                                1 / (section.u_basis_end - section.u_join));
-  const double steepest = std::abs(brake_slope_) * kBrakePeak + room * fall;
-  if (room > 0 && steepest > 0) {
-    brake_u_ = std::min(room / steepest, longest);
-  } else {
+  if (!(room > 0 && steepness > 0)) {
     brake_slope_ = 0;
+    return;
   }
+  brake_u_ = std::min(room / (steepness * kBrakePeak + room * fall), longest);
+  double too_long = std::min(room / (steepness * kBrakePeak), longest);
+  for (int i = 0; i < kBrakeSteps; ++i) {
+    const double length = 0.5 * (brake_u_ + too_long);
+    (fits(joined, room / steepness, length) ? brake_u_ : too_long) = length;
+  }
+}
+
+// Whether a brake of this length stays inside the room, which is given by slope.
+bool Envelope::fits(const Joined& joined, double room, double length) const KNOTWAVE_RT {
+  const curves::JoinProgram& section = joined.section;
+  for (int i = 1; i < kBrakePlaces; ++i) {
+    const double x = static_cast<double>(i) / kBrakePlaces;
+    const double u = section.u_join + x * length;
+    double kept = section.basis.at_u(u, 0);
+    if (joined.is_level) kept += section.basis.at_u(u, 1);
+    if (!(length * brake(x) <= kBrakeMargin * room * kept)) return false;
+  }
+  return true;
 }
 
 // A joined value with the brake, at an age where it still plays.

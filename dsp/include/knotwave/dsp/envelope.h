@@ -105,8 +105,14 @@ class Envelope {
             base::SampleTime time) KNOTWAVE_RT;
   void let_go(const EnvelopeProgram& program, const Now& from, base::SampleTime time) KNOTWAVE_RT;
   void start(const curves::JoinProgram& section, base::SampleTime time) KNOTWAVE_RT;
-  void set_brake(const curves::JoinProgram& section, double value, double kept, double wanted,
-                 double longest) KNOTWAVE_RT;
+  /// A section with its first point moved: what it starts with, and whether P1 is level with P0.
+  struct Joined {
+    const curves::JoinProgram& section;
+    double value = 0, slope = 0;
+    bool is_level = false;
+  };
+  void set_brake(const Joined& joined, double wanted, double longest) KNOTWAVE_RT;
+  bool fits(const Joined& joined, double room, double length) const KNOTWAVE_RT;
   double rounded(double value, double x) const KNOTWAVE_RT;
   double place(const EnvelopeProgram& program, double u) const KNOTWAVE_RT;
   void render_chunk(const EnvelopeProgram& program, std::int64_t first,

@@ -6,11 +6,18 @@ set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH pkgconfig_to_prefix /prefix/${pkgconfig_dir} /prefix)
 string(REGEX REPLACE "/$" "" pkgconfig_to_prefix "${pkgconfig_to_prefix}")
 
-# What `pkg-config --libs knotwave-MODULE` must name: our archives are static, so all they use.
+# What `pkg-config --libs knotwave-MODULE` must name: of an archive, all it uses.
 function(knotwave_write_pkgconfig module)
+  string(REPLACE _ - name ${module})
   set(requires "")
   set(libs "-L\${libdir} -lknotwave_${module}")
+  set(cflags "-I\${includedir} -ffp-contract=off")
   get_target_property(used knotwave_${module} LINK_LIBRARIES)
+  get_target_property(type knotwave_${module} TYPE)
+  if(type STREQUAL "SHARED_LIBRARY")  # holds all it uses, and its headers no code
+    set(used "")
+    set(cflags "-I\${includedir}")
+  endif()
   foreach(library IN LISTS used)
     if(library MATCHES "^knotwave::(.*)$")
       list(APPEND requires knotwave-${CMAKE_MATCH_1})
@@ -23,18 +30,18 @@ function(knotwave_write_pkgconfig module)
     endif()
   endforeach()
   list(JOIN requires " " requires)
-  set(file ${PROJECT_BINARY_DIR}/pkgconfig/knotwave-${module}.pc)
+  set(file ${PROJECT_BINARY_DIR}/pkgconfig/knotwave-${name}.pc)
   file(WRITE ${file}
 "prefix=\${pcfiledir}/${pkgconfig_to_prefix}
 libdir=\${prefix}/${CMAKE_INSTALL_LIBDIR}
 includedir=\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}
 
-Name: knotwave-${module}
-Description: ${PROJECT_DESCRIPTION}: ${module}
+Name: knotwave-${name}
+Description: ${PROJECT_DESCRIPTION}: ${name}
 Version: ${PROJECT_VERSION}
 Requires: ${requires}
 Libs: ${libs}
-Cflags: -I\${includedir} -ffp-contract=off
+Cflags: ${cflags}
 ")
   install(FILES ${file} DESTINATION ${pkgconfig_dir})
 endfunction()

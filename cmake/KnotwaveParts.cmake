@@ -1,15 +1,23 @@
 # Finds the libraries of others (docs/dependencies.md). AUTO takes what is there and says so; ON and
 # missing is an error; with all three audio parts OFF, curves, dsp and engine still build and test.
 find_package(Threads REQUIRED)
-find_package(PkgConfig REQUIRED)
-find_package(hwy REQUIRED)
+if("curves" IN_LIST KNOTWAVE_BUILT_MODULES)
+  find_package(hwy REQUIRED)
+endif()
 find_package(tomlplusplus REQUIRED)
 if(KNOTWAVE_BUILD_APPS)
   find_package(CLI11 REQUIRED)
 endif()
 
+# Only io uses parts that have no CMake files.
+if("io" IN_LIST KNOTWAVE_BUILT_MODULES)
+  find_package(PkgConfig REQUIRED)
+endif()
 function(knotwave_find_part part module target)
   set(KNOTWAVE_HAVE_${part} FALSE PARENT_SCOPE)
+  if(NOT "io" IN_LIST KNOTWAVE_BUILT_MODULES)
+    return()
+  endif()
   if(KNOTWAVE_WITH_${part} STREQUAL "OFF")
     message(STATUS "Knotwave: ${part} off")
     return()

@@ -6,7 +6,7 @@ set -euo pipefail
 build=$1 source=$2 cxx=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cmake --build "$build" --target programs knotwave_engine knotwave_io >"$work/build.log" || { tail -n 30 "$work/build.log"; exit 1; }
+cmake --build "$build" --target programs knotwave_engine knotwave_io knotwave_curves_c >"$work/build.log" || { tail -n 30 "$work/build.log"; exit 1; }
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
 expected="0.50 0.25 261.626 Hz, empty.mid"
 
@@ -22,7 +22,7 @@ check find_package "$("$work/cmake/outside")"
 
 PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name knotwave-base.pc)")
 export PKG_CONFIG_PATH
-for module in base curves dsp engine io; do pkg-config --validate "knotwave-$module"; done
+for module in base curves curves-c dsp engine io; do pkg-config --validate "knotwave-$module"; done
 # shellcheck disable=SC2046
 "$cxx" -std=c++20 -O1 $(pkg-config --cflags knotwave-engine knotwave-io) \
   "$source/tests/build/outside/main.cpp" -o "$work/outside" $(pkg-config --libs knotwave-engine knotwave-io)

@@ -49,33 +49,42 @@ def series_quotient(numerator, denominator):
     return out
 
 
+def expanded_knots(knots, degree, periodic):
+    """In rationals; those of a period go on to both sides."""
+    knots = [Fraction(x) for x in knots]
+    if not periodic:
+        return knots
+    period = knots[-1] - knots[0]
+    before = [k - period for k in knots[-1 - degree:-1]]
+    after = [k + period for k in knots[1:1 + degree]]
+    return before + knots + after
+
+
 def expanded(curve):
     """Knots, points and weights in rationals; those of a periodic curve as if it were not."""
     degree, dim = curve["degree"], curve["dim"]
-    knots = [Fraction(x) for x in curve["knots"]]
     points = [Fraction(x) for x in curve["points"]]
     weights = [Fraction(x) for x in curve["weights"]] or [Fraction(1)] * (len(points) // dim)
     if curve["periodic"]:
-        period = knots[-1] - knots[0]
-        before = [k - period for k in knots[-1 - degree:-1]]
-        after = [k + period for k in knots[1:1 + degree]]
-        knots = before + knots + after
         points += points[:degree * dim]
         weights += weights[:degree]
-    return knots, points, weights
+    return expanded_knots(curve["knots"], degree, curve["periodic"]), points, weights
 
 
-def exact_derivatives(curve, u, side, order):
-    """[order + 1][dim] exact values."""
+def span_at(knots, degree, u, side):
+    """Index of the span that begins at or before u, or (side L) before it."""
+    spans = [i for i in range(degree, len(knots) - degree - 1) if knots[i] < knots[i + 1]]
+    if side == "L":
+        return [i for i in spans if knots[i] < u][-1]
+    return [i for i in spans if knots[i] <= u][-1]
+
+
+def weighted_series(curve, u, side, order):
+    """Numerators [dim][order + 1] and weight [order + 1] as power series around u."""
     degree, dim = curve["degree"], curve["dim"]
     knots, points, weights = expanded(curve)
-    count = len(weights)
     u = Fraction(u)
-    spans = [i for i in range(degree, count) if knots[i] < knots[i + 1]]
-    if side == "L":
-        span = [i for i in spans if knots[i] < u][-1]
-    else:
-        span = [i for i in spans if knots[i] <= u][-1]
+    span = span_at(knots, degree, u, side)
     known = {}
     total = [Fraction(0)] * (order + 1)
     sums = [[Fraction(0)] * (order + 1) for _ in range(dim)]
@@ -86,8 +95,14 @@ def exact_derivatives(curve, u, side, order):
             total[k] += share
             for c in range(dim):
                 sums[c][k] += share * points[i * dim + c]
+    return sums, total
+
+
+def exact_derivatives(curve, u, side, order):
+    """[order + 1][dim] exact values."""
+    sums, total = weighted_series(curve, u, side, order)
     quotients = [series_quotient(s, total) for s in sums]
-    return [[quotients[c][k] * math.factorial(k) for c in range(dim)] for k in range(order + 1)]
+    return [[quotient[k] * math.factorial(k) for quotient in quotients] for k in range(order + 1)]
 
 
 def random_knots(rng, degree, count, kind):

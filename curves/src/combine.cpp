@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "knotwave/base/document.h"
 #include "knotwave/curves/reparametrize.h"
@@ -67,45 +68,60 @@ bool has_same_basis(const NurbsCurve& first, const NurbsCurve& second) {
          equal_numbers(first.jumps(), second.jumps());
 }
 
-// `curve` over the domain of `like`; knots that rounding moved beside one of `like` are moved onto
+// The knots of curves over one domain, each as often as the curve that has it most often.
+class CommonKnots {
+ public:
+  void include(const NurbsCurve& curve) {
+    const std::vector<double> written = curve.spec().knots;
+    written_.insert(written_.end(), written.begin(), written.end());
+    std::sort(written_.begin(), written_.end());
+    jumps_.insert(jumps_.end(), curve.jumps().begin(), curve.jumps().end());
+    std::sort(jumps_.begin(), jumps_.end());
+    jumps_.erase(std::unique(jumps_.begin(), jumps_.end()), jumps_.end());
+    std::map<Knot, int> times;
+    for (const Knot& knot :
+         KnotSequence{curve.knots(), curve.degree(), curve.is_periodic()}.all()) {
+      const bool inside = knot.period == 0 && knot.at >= curve.u_min() && knot.at < curve.u_max();
+      const bool at_open_end = !curve.is_periodic() && knot.at == curve.u_min();
+      if (inside && !at_open_end) ++times[knot];
+    }
+    for (const auto& [knot, count] : times) times_[knot] = std::max(times_[knot], count);
+  }
+
+  // A knot within `slack` of u, or u.
+  double snapped(double u, double slack) const {
+    const auto above = std::lower_bound(written_.begin(), written_.end(), u - slack);
+    return above != written_.end() && *above <= u + slack ? *above : u;
+  }
+
+  Result<NurbsCurve> inserted_into(const NurbsCurve& curve) const {
+    HomogeneousCurve all(curve);
+    for (const auto& [knot, count] : times_) {
+      for (int have = all.multiplicity(knot); have < count; ++have) all.insert_and_repeat(knot);
+    }
+    CurveSpec spec = curve.spec();
+    spec.jumps = jumps_;
+    all.write_to(spec);
+    return NurbsCurve::create(std::move(spec));
+  }
+
+ private:
+  std::vector<double> written_;
+  std::vector<double> jumps_;
+  std::map<Knot, int> times_;
+};
+
+// `curve` over the domain of `like`; knots that rounding moved beside a known one are moved onto
 // it.
-Result<NurbsCurve> over_domain_of(const NurbsCurve& like, const NurbsCurve& curve) {
+Result<NurbsCurve> over_domain_of(const NurbsCurve& like, const CommonKnots& known,
+                                  const NurbsCurve& curve) {
   if (curve.u_min() == like.u_min() && curve.u_max() == like.u_max()) return curve;
   auto moved = reparametrize(curve, like.u_min(), like.u_max());
   if (!moved) return moved;
   CurveSpec spec = moved->spec();
-  const std::vector<double> known = like.spec().knots;
   const double slack = 0x1p-50 * std::max(std::abs(like.u_min()), std::abs(like.u_max()));
-  const auto snapped = [&](double u) {
-    const auto above = std::lower_bound(known.begin(), known.end(), u - slack);
-    return above != known.end() && *above <= u + slack ? *above : u;
-  };
-  for (double& knot : spec.knots) knot = snapped(knot);
-  for (double& jump : spec.jumps) jump = snapped(jump);
-  return NurbsCurve::create(std::move(spec));
-}
-
-// The knots of `other` that `curve` has less often, and its jumps.
-Result<NurbsCurve> with_knots_of(const NurbsCurve& curve, const NurbsCurve& other) {
-  HomogeneousCurve all(curve);
-  const HomogeneousCurve model(other);
-  for (std::size_t i = 0; i < model.knots.size(); ++i) {
-    const Knot knot = model.knots[i];
-    const bool in_domain = knot.period == 0 && knot.at >= curve.u_min() && knot.at < curve.u_max();
-    const bool at_open_end = !curve.is_periodic() && knot.at == curve.u_min();
-    if (!in_domain || at_open_end || (i > 0 && model.knots[i - 1] == knot)) continue;
-    for (int have = all.multiplicity(knot); have < model.multiplicity(knot); ++have) {
-      all.insert_and_repeat(knot);
-    }
-  }
-  CurveSpec spec = curve.spec();
-  for (const double jump : other.jumps()) {
-    if (std::find(spec.jumps.begin(), spec.jumps.end(), jump) == spec.jumps.end()) {
-      spec.jumps.push_back(jump);
-    }
-  }
-  std::sort(spec.jumps.begin(), spec.jumps.end());
-  all.write_to(spec);
+  for (double& knot : spec.knots) knot = known.snapped(knot, slack);
+  for (double& jump : spec.jumps) jump = known.snapped(jump, slack);
   return NurbsCurve::create(std::move(spec));
 }
 
@@ -145,22 +161,39 @@ Result<NurbsCurve> join(const NurbsCurve& first, const NurbsCurve& second, doubl
   return result;
 }
 
+Result<std::vector<NurbsCurve>> make_compatible(std::span<const NurbsCurve> curves) {
+  bool periodic = true, compatible = true;
+  int degree = 0;
+  for (const NurbsCurve& curve : curves) {
+    if (auto good = check_dims(curves.front(), curve); !good) return good.error();
+    degree = std::max(degree, curve.degree());
+    periodic = periodic && curve.is_periodic();
+    compatible = compatible && has_same_basis(curves.front(), curve);
+  }
+  if (compatible) return std::vector<NurbsCurve>(curves.begin(), curves.end());
+  std::vector<NurbsCurve> all;
+  CommonKnots common;
+  for (const NurbsCurve& curve : curves) {
+    const auto high = raised(curve, degree, periodic);
+    if (!high) return high.error();
+    auto moved = over_domain_of(all.empty() ? *high : all.front(), common, *high);
+    if (!moved) return moved.error();
+    common.include(*moved);
+    all.push_back(std::move(*moved));
+  }
+  for (NurbsCurve& curve : all) {
+    auto fine = common.inserted_into(curve);
+    if (!fine) return fine.error();
+    curve = std::move(*fine);
+  }
+  return all;
+}
+
 Result<CompatibleCurves> make_compatible(const NurbsCurve& first, const NurbsCurve& second) {
-  if (auto good = check_dims(first, second); !good) return good.error();
-  if (has_same_basis(first, second)) return CompatibleCurves{first, second};
-  const bool periodic = first.is_periodic() && second.is_periodic();
-  const int degree = std::max(first.degree(), second.degree());
-  const auto a = raised(first, degree, periodic);
-  if (!a) return a.error();
-  const auto raised_second = raised(second, degree, periodic);
-  if (!raised_second) return raised_second.error();
-  const auto b = over_domain_of(*a, *raised_second);
-  if (!b) return b.error();
-  auto fine_a = with_knots_of(*a, *b);
-  if (!fine_a) return fine_a.error();
-  auto fine_b = with_knots_of(*b, *a);
-  if (!fine_b) return fine_b.error();
-  return CompatibleCurves{std::move(*fine_a), std::move(*fine_b)};
+  const NurbsCurve curves[] = {first, second};
+  auto both = make_compatible(curves);
+  if (!both) return both.error();
+  return CompatibleCurves{std::move(both->front()), std::move(both->back())};
 }
 
 Result<NurbsCurve> morph(const NurbsCurve& first, const NurbsCurve& second, double amount) {

@@ -13,20 +13,9 @@ namespace {
 using base::index_of;
 using Points = std::vector<HomogeneousPoint>;
 
-// de Casteljau at 1/2: `points` becomes its left half, the right one is returned.
-Points halve(Points& points) {
-  Points right = points;
-  for (std::size_t level = 1; level < points.size(); ++level) {
-    for (std::size_t r = 0; r + level < points.size(); ++r) {
-      right[r] = blend(right[r], right[r + 1], 1.0, 1.0);
-    }
-    points[level] = right[0];
-  }
-  return right;
-}
-
+// Both curves, or both families of them, over one part.
 struct Pair {
-  Points a, b;
+  std::vector<Points> a, b;
   int halvings = 0;
 };
 
@@ -42,25 +31,54 @@ double distance_at(const HomogeneousPoint& a, const HomogeneousPoint& b, int dim
   return length_of(apart, dim);
 }
 
+// How far any of b's points is from `middle`.
+double hull_radius(const std::vector<Points>& b, const HomogeneousPoint& middle, int dim) {
+  double radius = 0;
+  for (const Points& points : b) {
+    for (const HomogeneousPoint& point : points) {
+      radius = std::max(radius, distance_at(point, middle, dim));
+    }
+  }
+  return radius;
+}
+
 double hull_bound(const Pair& pair, int dim) {
   // o: where b is about the middle of its piece, so that the hull of b is small around it.
-  const HomogeneousPoint& middle = pair.b[pair.b.size() / 2];
-  double radius = 0;
-  for (const HomogeneousPoint& point : pair.b) {
-    radius = std::max(radius, distance_at(point, middle, dim));
-  }
+  const Points& of_b = pair.b[pair.b.size() / 2];
+  const HomogeneousPoint& middle = of_b[of_b.size() / 2];
+  const double radius = hull_radius(pair.b, middle, dim);
   double bound = 0;
-  for (std::size_t j = 0; j < pair.a.size(); ++j) {
-    const DoubleDouble more_weight = pair.a[j].w - pair.b[j].w;
-    double bracket[kMaxDim];
-    for (std::size_t c = 0; c < index_of(dim); ++c) {
-      const DoubleDouble o = middle.x[c] / middle.w;
-      bracket[c] = (pair.a[j].x[c] - pair.b[j].x[c] - more_weight * o).hi;
+  for (std::size_t r = 0; r < pair.a.size(); ++r) {
+    for (std::size_t j = 0; j < pair.a[r].size(); ++j) {
+      const HomogeneousPoint &a = pair.a[r][j], &b = pair.b[r][j];
+      const DoubleDouble more_weight = a.w - b.w;
+      double bracket[kMaxDim];
+      for (std::size_t c = 0; c < index_of(dim); ++c) {
+        const DoubleDouble o = middle.x[c] / middle.w;
+        bracket[c] = (a.x[c] - b.x[c] - more_weight * o).hi;
+      }
+      bound =
+          std::max(bound, (length_of(bracket, dim) + std::abs(more_weight.hi) * radius) / a.w.hi);
     }
-    bound = std::max(
-        bound, (length_of(bracket, dim) + std::abs(more_weight.hi) * radius) / pair.a[j].w.hi);
   }
   return bound;
+}
+
+double distance_at_ends(const Pair& pair, int dim) {
+  double found = 0;
+  for (std::size_t r = 0; r < pair.a.size(); ++r) {
+    found = std::max({found, distance_at(pair.a[r].front(), pair.b[r].front(), dim),
+                      distance_at(pair.a[r].back(), pair.b[r].back(), dim)});
+  }
+  return found;
+}
+
+// `pair` becomes its left half.
+Pair halved(Pair& pair) {
+  Pair right{{}, {}, ++pair.halvings};
+  for (Points& points : pair.a) right.a.push_back(halve(points));
+  for (Points& points : pair.b) right.b.push_back(halve(points));
+  return right;
 }
 
 }  // namespace
@@ -93,16 +111,36 @@ void raise_degree(std::vector<HomogeneousPoint>& points) {
   points = std::move(raised);
 }
 
+std::vector<HomogeneousPoint> halve(std::vector<HomogeneousPoint>& points) {
+  Points right = points;
+  for (std::size_t level = 1; level < points.size(); ++level) {
+    for (std::size_t r = 0; r + level < points.size(); ++r) {
+      right[r] = blend(right[r], right[r + 1], 1.0, 1.0);
+    }
+    points[level] = right[0];
+  }
+  return right;
+}
+
 double distance_bound(const BezierPiece& a, const BezierPiece& b, int dim, double limit) {
+  return distance_bound(std::span(&a, 1), std::span(&b, 1), dim, limit);
+}
+
+double distance_bound(std::span<const BezierPiece> a, std::span<const BezierPiece> b, int dim,
+                      double limit) {
   constexpr int kMostHalvings = 10;
-  std::vector<Pair> open{{a.points, b.points, 0}};
-  while (open.front().b.size() < open.front().a.size()) raise_degree(open.front().b);
+  std::vector<Pair> open(1);
+  for (const BezierPiece& piece : a) open.front().a.push_back(piece.points);
+  for (const BezierPiece& piece : b) {
+    open.front().b.push_back(piece.points);
+    Points& points = open.front().b.back();
+    while (points.size() < a.front().points.size()) raise_degree(points);
+  }
   double found = 0, bound = 0;
   while (!open.empty()) {
     Pair pair = std::move(open.back());
     open.pop_back();
-    found = std::max({found, distance_at(pair.a.front(), pair.b.front(), dim),
-                      distance_at(pair.a.back(), pair.b.back(), dim)});
+    found = std::max(found, distance_at_ends(pair, dim));
     if (found > limit) return std::numeric_limits<double>::infinity();
     const double upper = hull_bound(pair, dim);
     if (upper <= bound) continue;
@@ -110,9 +148,27 @@ double distance_bound(const BezierPiece& a, const BezierPiece& b, int dim, doubl
       bound = upper;
       continue;
     }
-    Pair right{halve(pair.a), halve(pair.b), ++pair.halvings};
+    Pair right = halved(pair);
     open.push_back(std::move(right));
     open.push_back(std::move(pair));
+  }
+  return bound;
+}
+
+double distance_bound(std::span<const NurbsCurve> before, std::span<const NurbsCurve> after,
+                      double limit) {
+  std::vector<std::vector<BezierPiece>> pieces;  // [row][piece]
+  std::vector<HomogeneousCurve> smaller;
+  for (const NurbsCurve& curve : before) pieces.push_back(bezier_pieces(HomogeneousCurve(curve)));
+  for (const NurbsCurve& curve : after) smaller.emplace_back(curve);
+  double bound = 0;
+  for (std::size_t i = 0; i < pieces.front().size(); ++i) {
+    std::vector<BezierPiece> a, b;
+    for (std::size_t r = 0; r < pieces.size(); ++r) {
+      a.push_back(pieces[r][i]);
+      b.push_back(piece_between(smaller[r], a.back().left, a.back().right));
+    }
+    bound = std::max(bound, distance_bound(a, b, before.front().dim(), limit));
   }
   return bound;
 }

@@ -256,13 +256,8 @@ Result<ReducedCurve> reduce_degree(const NurbsCurve& curve, double tolerance) {
   after.write_to(spec);
   auto result = NurbsCurve::create(std::move(spec));
   if (!result) return missed("there is no curve (" + result.error().message + ")");
-  const HomogeneousCurve rounded(*result);
-  double error = 0;
-  for (const BezierPiece& piece : pieces) {
-    constexpr double kNoLimit = 1e300;
-    const BezierPiece part = piece_between(rounded, piece.left, piece.right);
-    error = std::max(error, distance_bound(piece, part, curve.dim(), kNoLimit));
-  }
+  constexpr double kNoLimit = 1e300;
+  const double error = distance_bound(std::span(&curve, 1), std::span(&*result, 1), kNoLimit);
   if (!(error <= tolerance)) return missed("it is up to " + number_text(error) + " away");
   return ReducedCurve{std::move(*result), 1, error};
 }

@@ -35,24 +35,6 @@ Result<void> check_count(const std::string& what, int degree, std::size_t count)
                                              std::to_string(count));
 }
 
-std::vector<double> with_ends(double low, const std::vector<double>& inner, double high, int p) {
-  std::vector<double> knots(index_of(p + 1), low);
-  knots.insert(knots.end(), inner.begin(), inner.end());
-  knots.insert(knots.end(), index_of(p + 1), high);
-  return knots;
-}
-
-// (9.8): knots by averaging.
-std::vector<double> averaged_knots(std::span<const double> parameters, int p) {
-  std::vector<double> inner;
-  for (std::size_t j = 1; j + index_of(p) < parameters.size(); ++j) {
-    DoubleDouble sum = 0.0;
-    for (std::size_t i = j; i < j + index_of(p); ++i) sum += DoubleDouble(parameters[i]);
-    inner.push_back((sum / DoubleDouble(p)).hi);
-  }
-  return with_ends(parameters.front(), inner, parameters.back(), p);
-}
-
 // (9.68), (9.69): as many parameters in every span, about.
 std::vector<double> shared_out_knots(std::span<const double> parameters, int p, int count) {
   const DoubleDouble step = DoubleDouble(static_cast<double>(parameters.size())) /
@@ -64,7 +46,7 @@ std::vector<double> shared_out_knots(std::span<const double> parameters, int p, 
     const double low = parameters[i - 1], high = parameters[i];
     inner.push_back(low + (place - whole) * (high - low));
   }
-  return with_ends(parameters.front(), inner, parameters.back(), p);
+  return clamped_knots(parameters.front(), inner, parameters.back(), p);
 }
 
 Result<std::vector<double>> spaced_parameters(const std::string& what,

@@ -21,47 +21,75 @@ KnotSequence sequence_v(const NurbsSurface& surface) {
   return {surface.knots_v(), surface.degree_v(), false};
 }
 
-// Partial derivatives of the weighted surface, seen from `origin`, and of its weight.
-class Partials {
- public:
-  Partials(const NurbsSurface& surface, double u, double v, std::span<const double> origin,
-           int order) noexcept
-      : surface_(surface),
-        origin_(origin),
-        span_u_(find_span(surface.knots_u(), surface.degree_u(), u, Side::right)),
-        span_v_(find_span(surface.knots_v(), surface.degree_v(), v, Side::right)) {
-    const SpanBasis along_u(sequence_u(surface), span_u_, u);
-    const SpanBasis along_v(sequence_v(surface), span_v_, v);
-    for (int k = 0; k <= std::min(order, surface.degree_u()); ++k) along_u.derivative(k, u_[k]);
-    for (int l = 0; l <= std::min(order, surface.degree_v()); ++l) along_v.derivative(l, v_[l]);
-  }
+// A parameter in the domain, and the span on the side asked for.
+struct Place {
+  double at = 0;
+  int span = 0;
 
-  /// d^(k+l) / du^k dv^l of coordinate c, or of the weight when c is dim.
-  DoubleDouble of(int k, int l, int c) const noexcept {
-    const int p = surface_.degree_u(), q = surface_.degree_v(), dim = surface_.dim();
-    DoubleDouble sum = 0.0;
-    if (k > p || l > q) return sum;
-    for (int b = 0; b <= q; ++b) {
-      for (int a = 0; a <= p; ++a) {
-        const int i = (span_v_ - q + b) * surface_.count_u() + span_u_ - p + a;
-        DoubleDouble share = u_[k][a] * v_[l][b] * surface_.weights()[index_of(i)];
-        if (c < dim) {
-          share = share * DoubleDouble::difference(surface_.points()[index_of(i * dim + c)],
-                                                   origin_[index_of(c)]);
+  Place(const KnotSequence& knots, double u, Side side) noexcept
+      : at(knots.domain().place(u, side)),
+        span(find_span(knots.expanded, knots.degree, at, side)) {}
+};
+
+constexpr int kOrders = kMaxDegree + 1;
+
+// Partial derivatives of the weighted surface, seen from `origin`, and of its weight.
+struct WeightedPartials {
+  DoubleDouble of[kOrders][kOrders][kMaxDim + 1];  // [k][l][c], the weight at c = dim
+
+  WeightedPartials(const NurbsSurface& surface, const Place& u, const Place& v,
+                   std::span<const double> origin, int order) noexcept {
+    const SpanBasis basis_u(sequence_u(surface), u.span, u.at);
+    const SpanBasis basis_v(sequence_v(surface), v.span, v.at);
+    const int p = surface.degree_u(), q = surface.degree_v();
+    for (int k = 0; k <= std::min(order, p); ++k) {
+      DoubleDouble along_u[kOrders];
+      basis_u.derivative(k, along_u);
+      for (int l = 0; l <= std::min(order - k, q); ++l) {
+        DoubleDouble along_v[kOrders];
+        basis_v.derivative(l, along_v);
+        const int first = (v.span - q) * surface.count_u() + u.span - p;
+        for (int b = 0; b <= q; ++b) {
+          for (int a = 0; a <= p; ++a) {
+            add(surface, first + b * surface.count_u() + a, along_u[a] * along_v[b], origin,
+                of[k][l]);
+          }
         }
-        sum += share;
       }
     }
-    return sum;
   }
 
  private:
-  const NurbsSurface& surface_;
-  std::span<const double> origin_;
-  int span_u_, span_v_;
-  DoubleDouble u_[kMaxDegree + 1][kMaxDegree + 1];
-  DoubleDouble v_[kMaxDegree + 1][kMaxDegree + 1];
+  static void add(const NurbsSurface& surface, int i, DoubleDouble share,
+                  std::span<const double> origin, std::span<DoubleDouble> sums) noexcept {
+    const int dim = surface.dim();
+    if (surface.is_rational()) share = share * surface.weights()[index_of(i)];
+    for (int c = 0; c < dim; ++c) {
+      sums[index_of(c)] += share * DoubleDouble::difference(surface.points()[index_of(i * dim + c)],
+                                                            origin[index_of(c)]);
+    }
+    sums[index_of(dim)] += share;
+  }
 };
+
+// A4.4: what the product rule says the denominator's derivatives add is taken off.
+DoubleDouble without_weight(const WeightedPartials& weighted, const DoubleDouble* known, int order,
+                            int k, int l, int c, int dim) noexcept {
+  DoubleDouble value = weighted.of[k][l][c];
+  double ways_k = 1;
+  for (int i = 0; i <= k; ++i) {
+    double ways_l = 1;
+    for (int j = 0; j <= l; ++j) {
+      if (i + j > 0) {
+        const DoubleDouble factor = weighted.of[i][j][dim] * (ways_k * ways_l);
+        value = value - factor * known[(k - i) * (order + 1) + l - j];
+      }
+      ways_l = ways_l * (l - j) / (j + 1);
+    }
+    ways_k = ways_k * (k - i) / (i + 1);
+  }
+  return value;
+}
 }  // namespace
 
 Result<NurbsSurface> NurbsSurface::create(SurfaceSpec spec) {
@@ -101,16 +129,13 @@ SurfaceSpec NurbsSurface::spec() const {
 }
 
 void NurbsSurface::evaluate(double u, double v, std::span<double> out) const noexcept {
-  u = sequence_u(*this).domain().place(u, Side::right);
-  v = sequence_v(*this).domain().place(v, Side::right);
-  const int span_u = find_span(knots_u_, degree_u_, u, Side::right);
-  const int span_v = find_span(knots_v_, degree_v_, v, Side::right);
-  const SpanBasis along_u(sequence_u(*this), span_u, u);
-  const SpanBasis along_v(sequence_v(*this), span_v, v);
+  const Place at_u(sequence_u(*this), u, Side::right), at_v(sequence_v(*this), v, Side::right);
+  const SpanBasis along_u(sequence_u(*this), at_u.span, at_u.at);
+  const SpanBasis along_v(sequence_v(*this), at_v.span, at_v.at);
   DoubleDouble sums[kMaxDim], total = 0.0;
   for (int b = 0; b <= degree_v_; ++b) {
     for (int a = 0; a <= degree_u_; ++a) {
-      const int i = (span_v - degree_v_ + b) * count_u_ + span_u - degree_u_ + a;
+      const int i = (at_v.span - degree_v_ + b) * count_u_ + at_u.span - degree_u_ + a;
       DoubleDouble share = along_u.rows[degree_u_][a] * along_v.rows[degree_v_][b];
       if (rational_) share = share * weights_[index_of(i)];
       total += share;
@@ -124,58 +149,47 @@ void NurbsSurface::evaluate(double u, double v, std::span<double> out) const noe
 
 void NurbsSurface::derivatives(double u, double v, int order,
                                std::span<double> out) const noexcept {
-  u = sequence_u(*this).domain().place(u, Side::right);
-  v = sequence_v(*this).domain().place(v, Side::right);
-  const auto at = [&](int k, int l, int c) { return index_of((k * (order + 1) + l) * dim_ + c); };
+  derivatives(u, Side::right, v, Side::right, order, out);
+}
+
+void NurbsSurface::derivatives(double u, Side side_u, double v, Side side_v, int order,
+                               std::span<double> out) const noexcept {
   std::fill_n(out.begin(), index_of((order + 1) * (order + 1) * dim_), 0.0);
-  double origin[kMaxDim];
-  evaluate(u, v, origin);
-  const Partials partials(*this, u, v, origin, order);
-  for (int k = 0; k <= order; ++k) {
-    for (int l = 0; k + l <= order; ++l) {
-      // A4.4: what the product rule says the denominator's derivatives add is taken off.
-      DoubleDouble value[kMaxDim];
-      for (int c = 0; c < dim_; ++c) value[c] = partials.of(k, l, c);
-      double binomial_k = 1;
-      for (int i = 0; rational_ && i <= k; ++i) {
-        double binomial_l = 1;
-        for (int j = 0; j <= l; ++j) {
-          if (i + j > 0) {
-            const DoubleDouble factor = partials.of(i, j, dim_) * (binomial_k * binomial_l);
-            for (int c = 0; c < dim_; ++c) value[c] = value[c] - factor * out[at(k - i, l - j, c)];
-          }
-          binomial_l = binomial_l * (l - j) / (j + 1);
-        }
-        binomial_k = binomial_k * (k - i) / (i + 1);
-      }
-      for (int c = 0; c < dim_; ++c) {
-        out[at(k, l, c)] = k + l == 0 ? 0.0 : (value[c] / partials.of(0, 0, dim_)).hi;
+  evaluate(u, v, out.first(index_of(dim_)));
+  const WeightedPartials weighted(*this, {sequence_u(*this), u, side_u},
+                                  {sequence_v(*this), v, side_v}, out, order);
+  for (int c = 0; c < dim_; ++c) {
+    DoubleDouble known[kOrders * kOrders];
+    for (int k = 0; k <= order; ++k) {
+      for (int l = 0; k + l <= order; ++l) {
+        DoubleDouble value = weighted.of[k][l][c];
+        if (rational_) value = without_weight(weighted, known, order, k, l, c, dim_);
+        known[k * (order + 1) + l] = value / weighted.of[0][0][dim_];
+        const int at = (k * (order + 1) + l) * dim_ + c;
+        if (k + l > 0) out[index_of(at)] = known[k * (order + 1) + l].hi;
       }
     }
   }
-  for (int c = 0; c < dim_; ++c) out[index_of(c)] = origin[c];
 }
 
 NurbsCurve NurbsSurface::iso_curve_at_v(double v0) const {
-  const double v = sequence_v(*this).domain().place(v0, Side::right);
-  const int span = find_span(knots_v_, degree_v_, v, Side::right);
-  const SpanBasis basis(sequence_v(*this), span, v);
+  const Place at(sequence_v(*this), v0, Side::right);
+  const SpanBasis basis(sequence_v(*this), at.span, at.at);
   const int count = count_u_ - (periodic_u_ ? degree_u_ : 0);
   CurveSpec spec{name_, degree_u_, dim_, {}, {}, {}, periodic_u_, {}};
   spec.knots = written_knots(knots_u_, degree_u_, periodic_u_);
   for (int i = 0; i < count; ++i) {
-    append_blend(spec, basis, degree_v_, (span - degree_v_) * count_u_ + i, count_u_);
+    append_blend(spec, basis, degree_v_, (at.span - degree_v_) * count_u_ + i, count_u_);
   }
   return std::move(*NurbsCurve::create(std::move(spec)));
 }
 
 NurbsCurve NurbsSurface::iso_curve_at_u(double u0) const {
-  const double u = sequence_u(*this).domain().place(u0, Side::right);
-  const int span = find_span(knots_u_, degree_u_, u, Side::right);
-  const SpanBasis basis(sequence_u(*this), span, u);
+  const Place at(sequence_u(*this), u0, Side::right);
+  const SpanBasis basis(sequence_u(*this), at.span, at.at);
   CurveSpec spec{name_, degree_v_, dim_, {}, {}, knots_v_, false, {}};
   for (int j = 0; j < count_v_; ++j) {
-    append_blend(spec, basis, degree_u_, j * count_u_ + span - degree_u_, 1);
+    append_blend(spec, basis, degree_u_, j * count_u_ + at.span - degree_u_, 1);
   }
   return std::move(*NurbsCurve::create(std::move(spec)));
 }

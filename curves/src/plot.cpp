@@ -12,7 +12,8 @@
 
 namespace knotwave::curves {
 
-Scene surface_scene(const NurbsSurface& surface, const PlotOptions& options);  // plot_surface.cpp
+Scene surface_scene(const NurbsSurface& surface, const TrimRegion* kept,
+                    const PlotOptions& options);  // plot_surface.cpp
 
 namespace {
 
@@ -289,7 +290,12 @@ std::string plot_svg(const NurbsCurve& curve, const PlotOptions& options) {
 }
 
 std::string plot_svg(const NurbsSurface& surface, const PlotOptions& options) {
-  return svg_of(surface_scene(surface, options));
+  return svg_of(surface_scene(surface, nullptr, options));
+}
+
+std::string plot_svg(const NurbsSurface& surface, const TrimRegion& kept,
+                     const PlotOptions& options) {
+  return svg_of(surface_scene(surface, &kept, options));
 }
 
 std::vector<std::uint8_t> plot_png(const NurbsCurve& curve, const PlotOptions& options) {
@@ -297,7 +303,12 @@ std::vector<std::uint8_t> plot_png(const NurbsCurve& curve, const PlotOptions& o
 }
 
 std::vector<std::uint8_t> plot_png(const NurbsSurface& surface, const PlotOptions& options) {
-  return png_of(surface_scene(surface, options));
+  return png_of(surface_scene(surface, nullptr, options));
+}
+
+std::vector<std::uint8_t> plot_png(const NurbsSurface& surface, const TrimRegion& kept,
+                                   const PlotOptions& options) {
+  return png_of(surface_scene(surface, &kept, options));
 }
 
 }  // namespace knotwave::curves

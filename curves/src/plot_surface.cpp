@@ -10,7 +10,8 @@
 
 namespace knotwave::curves {
 
-Scene surface_scene(const NurbsSurface& surface, const PlotOptions& options);
+Scene surface_scene(const NurbsSurface& surface, const TrimRegion* kept,
+                    const PlotOptions& options);
 
 namespace {
 
@@ -23,8 +24,8 @@ constexpr int kDeep = 32;    // along v
 
 class SurfacePicture {
  public:
-  SurfacePicture(const NurbsSurface& surface, const PlotOptions& options)
-      : surface_(surface), options_(options) {
+  SurfacePicture(const NurbsSurface& surface, const TrimRegion* kept, const PlotOptions& options)
+      : surface_(surface), kept_(kept), options_(options) {
     scene_.width = options.width_px;
     scene_.height = options.height_px;
     scene_.title = surface.name() + ": " + description();
@@ -38,7 +39,11 @@ class SurfacePicture {
     draw_title(scene_, 28, options_.width_px - 28.0, 34, surface_.name(), description());
     draw_floor();
     draw_tiles();
-    if (options_.control_polygon) draw_net();
+    if (kept_ != nullptr) {
+      draw_borders();
+    } else if (options_.control_polygon) {
+      draw_net();
+    }
     return std::move(scene_);
   }
 
@@ -52,6 +57,7 @@ class SurfacePicture {
             " points";
     if (surface_.is_periodic_u()) text += ", periodic";
     if (surface_.dim() == 2) text += ", left channel";
+    if (kept_ != nullptr) text += ", trimmed";
     return text;
   }
 
@@ -224,6 +230,10 @@ class SurfacePicture {
     std::stable_sort(tiles.begin(), tiles.end(),
                      [](const Tile& a, const Tile& b) { return a.depth > b.depth; });
     for (const Tile& tile : tiles) {
+      if (kept_ != nullptr && !is_whole(tile.i, tile.j)) {
+        draw_rest_of_tile(tile.i, tile.j);
+        continue;
+      }
       const Place &a = corner(tile.i, tile.j), &b = corner(tile.i + 1, tile.j),
                   &c = corner(tile.i + 1, tile.j + 1), &d = corner(tile.i, tile.j + 1);
       const double height = 0.5 + 0.25 * (unit(a).z + unit(b).z + unit(c).z + unit(d).z);
@@ -239,6 +249,60 @@ class SurfacePicture {
     }
   }
 
+  Place place_at(double i, double j) const {
+    const Range u{surface_.u_min(), surface_.u_max()}, v{surface_.v_min(), surface_.v_max()};
+    return {u.low + u.size() * i / kAcross, v.low + v.size() * j / kDeep, 0};
+  }
+  bool is_kept(double i, double j) const {
+    const Place place = place_at(i, j);
+    return kept_->contains(place.x, place.y);
+  }
+  bool is_whole(int i, int j) const {
+    return is_kept(i, j) && is_kept(i + 1, j) && is_kept(i, j + 1) && is_kept(i + 1, j + 1) &&
+           is_kept(i + 0.5, j + 0.5);
+  }
+
+  // Of a tile that is cut, the small ones whose middle is kept.
+  void draw_rest_of_tile(int i, int j) {
+    constexpr int kParts = 6;
+    const Place &a = corner(i, j), &b = corner(i + 1, j), &d = corner(i, j + 1);
+    const auto spot = [&](int k, int l) {
+      const Place at =
+          place_at(i + static_cast<double>(k) / kParts, j + static_cast<double>(l) / kParts);
+      return place_of(at.x, at.y);
+    };
+    for (int l = 0; l < kParts; ++l) {
+      for (int k = 0; k < kParts; ++k) {
+        if (!is_kept(i + (k + 0.5) / kParts, j + (l + 0.5) / kParts)) continue;
+        const Place first = spot(k, l);
+        const Color fill = shade(a, b, d, 0.5 + unit(first).z);
+        scene_.area({project(first), project(spot(k + 1, l)), project(spot(k + 1, l + 1)),
+                     project(spot(k, l + 1))},
+                    fill, fill, 0.8);
+      }
+    }
+  }
+
+  // The loops, as far as they run over the surface.
+  void draw_borders() {
+    for (const TrimLoop& loop : kept_->loops()) {
+      for (const NurbsCurve& curve : loop) {
+        std::vector<Point> line;
+        const int steps = 48 * (curve.point_count() - curve.degree());
+        for (int i = 0; i <= steps; ++i) {
+          double at[2];
+          curve.evaluate(along({curve.u_min(), curve.u_max()}, i, steps), at);
+          const bool on_surface = at[0] >= surface_.u_min() && at[0] <= surface_.u_max() &&
+                                  at[1] >= surface_.v_min() && at[1] <= surface_.v_max();
+          if (on_surface) line.push_back(project(place_of(at[0], at[1])));
+          if (on_surface && i < steps) continue;
+          if (line.size() > 1) scene_.line(line, kInk, 2);
+          line.clear();
+        }
+      }
+    }
+  }
+
   // The front row and the back row are curves of the file: drawn strong.
   void draw_net() {
     for (const int j : {kDeep, 0}) {
@@ -251,6 +315,7 @@ class SurfacePicture {
   }
 
   const NurbsSurface& surface_;
+  const TrimRegion* kept_;
   PlotOptions options_;
   bool in_space_ = false;
   std::vector<Place> grid_;
@@ -262,8 +327,9 @@ class SurfacePicture {
 
 }  // namespace
 
-Scene surface_scene(const NurbsSurface& surface, const PlotOptions& options) {
-  return SurfacePicture(surface, options).drawn();
+Scene surface_scene(const NurbsSurface& surface, const TrimRegion* kept,
+                    const PlotOptions& options) {
+  return SurfacePicture(surface, kept, options).drawn();
 }
 
 }  // namespace knotwave::curves

@@ -21,33 +21,18 @@ Result<void> check_radius(const std::string& what, double radius) {
               what + " = " + number_text(radius) + " must be above 0");
 }
 
-// The unit circle from `start` on in `pieces` equal arcs, scaled by the radii. The first and last
-// points of a whole circle are the same.
-Result<NurbsCurve> scaled_arc(std::string name, double radius_x, double radius_y, double start,
-                              double length) {
-  const int pieces = static_cast<int>(std::ceil(4 * std::abs(length)));
+Result<NurbsCurve> scaled_arc(std::string name, double radius_x, double radius_y,
+                              const UnitArc& arc) {
   CurveSpec spec;
   spec.name = std::move(name);
   spec.degree = 2;
   spec.dim = 2;
-  const auto add = [&](DoubleDouble x, DoubleDouble y, double weight) {
-    spec.points.push_back((x * DoubleDouble(radius_x)).hi + 0.0);  // -0 becomes 0
-    spec.points.push_back((y * DoubleDouble(radius_y)).hi + 0.0);
-    spec.weights.push_back(weight);
-  };
-  const Direction first = direction_at(start);
-  Direction from = first;
-  add(from.x, from.y, 1);
-  spec.knots.assign(3, 0.0);
-  for (int i = 1; i <= pieces; ++i) {
-    const bool closes = i == pieces && std::abs(length) == 1;
-    const Direction to = closes ? first : direction_at(start + length * i / pieces);
-    const ArcMiddle middle = arc_middle(from, to);
-    add(middle.x, middle.y, middle.weight.hi);
-    add(to.x, to.y, 1);
-    spec.knots.insert(spec.knots.end(), i == pieces ? 3 : 2, static_cast<double>(i) / pieces);
-    from = to;
+  for (const UnitArc::Point& point : arc.points) {
+    spec.points.push_back((point.x * DoubleDouble(radius_x)).hi + 0.0);  // -0 becomes 0
+    spec.points.push_back((point.y * DoubleDouble(radius_y)).hi + 0.0);
+    spec.weights.push_back(point.weight.hi);
   }
+  spec.knots = arc.knots;
   return NurbsCurve::create(std::move(spec));
 }
 
@@ -64,22 +49,15 @@ Result<NurbsCurve> bezier(std::span<const double> points, int dim) {
 
 Result<NurbsCurve> arc(double radius, double start_cycles, double length_cycles) {
   if (auto good = check_radius("an arc: radius", radius); !good) return good.error();
-  if (!std::isfinite(start_cycles) || !std::isfinite(length_cycles)) {
-    return fail(ErrorCode::not_finite, "an arc from " + number_text(start_cycles) + " cycles, " +
-                                           number_text(length_cycles) + " long, is not finite");
-  }
-  if (length_cycles == 0 || std::abs(length_cycles) > 1) {
-    return fail(ErrorCode::value_out_of_range,
-                "an arc " + number_text(length_cycles) +
-                    " cycles long: the length must be within -1..1 and not 0");
-  }
-  return scaled_arc("arc", radius, radius, start_cycles - std::floor(start_cycles), length_cycles);
+  const auto unit = unit_arc("an arc", start_cycles, length_cycles);
+  if (!unit) return unit.error();
+  return scaled_arc("arc", radius, radius, *unit);
 }
 
 Result<NurbsCurve> ellipse(double radius_x, double radius_y) {
   if (auto good = check_radius("an ellipse: radius_x", radius_x); !good) return good.error();
   if (auto good = check_radius("an ellipse: radius_y", radius_y); !good) return good.error();
-  return scaled_arc("ellipse", radius_x, radius_y, 0, 1);
+  return scaled_arc("ellipse", radius_x, radius_y, *unit_arc("an ellipse", 0, 1));
 }
 
 Result<NurbsCurve> conic(std::span<const double> p0, std::span<const double> p1,

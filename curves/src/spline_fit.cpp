@@ -143,21 +143,44 @@ bool fit_points(Spline& spline, const Samples& samples, int first, int last) {
   return true;
 }
 
-bool interpolate_points(Spline& spline, const Samples& samples) {
-  const int p = spline.degree, dim = spline.dim, count = spline.count();
+bool solve_interpolation(const Spline& frame, std::span<const double> at,
+                         std::vector<DoubleDouble>& values, int columns) {
+  const int p = frame.degree, count = frame.count();
   BandMatrix matrix(count, p);
-  std::vector<DoubleDouble> right(samples.values.begin(), samples.values.end());
   for (int i = 0; i < count; ++i) {
-    const BasisRow row(spline, samples.at[index_of(i)]);
+    const BasisRow row(frame, at[index_of(i)]);
     for (int r = 0; r <= p; ++r) {
       const int column = row.first + r;
       if (std::abs(column - i) <= p) matrix.at(i, column) = row.values[r];
     }
   }
-  if (!matrix.solve(right, dim)) return false;
+  return matrix.solve(values, columns);
+}
+
+bool interpolate_points(Spline& spline, const Samples& samples) {
+  std::vector<DoubleDouble> right(samples.values.begin(), samples.values.end());
+  if (!solve_interpolation(spline, samples.at, right, spline.dim)) return false;
   spline.points.assign(right.size(), 0.0);
   keep_solution(spline, 0, right);
   return true;
+}
+
+std::vector<double> clamped_knots(double low, const std::vector<double>& inner, double high,
+                                  int p) {
+  std::vector<double> knots(index_of(p + 1), low);
+  knots.insert(knots.end(), inner.begin(), inner.end());
+  knots.insert(knots.end(), index_of(p + 1), high);
+  return knots;
+}
+
+std::vector<double> averaged_knots(std::span<const double> parameters, int p) {
+  std::vector<double> inner;
+  for (std::size_t j = 1; j + index_of(p) < parameters.size(); ++j) {
+    DoubleDouble sum = 0.0;
+    for (std::size_t i = j; i < j + index_of(p); ++i) sum += DoubleDouble(parameters[i]);
+    inner.push_back((sum / DoubleDouble(p)).hi);
+  }
+  return clamped_knots(parameters.front(), inner, parameters.back(), p);
 }
 
 }  // namespace knotwave::curves

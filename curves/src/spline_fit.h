@@ -37,5 +37,14 @@ bool fit_points(Spline& spline, const Samples& samples, int first, int last);
 /// As many points as samples: the spline through them all. False as above. The matrix is totally
 /// positive, so no pivots are sought (de Boor, A Practical Guide to Splines, XIII).
 bool interpolate_points(Spline& spline, const Samples& samples);
+/// The same for values of any number of columns: `values` [n*columns] at the parameters `at` become
+/// the points. Of `frame` the degree and knots count.
+bool solve_interpolation(const Spline& frame, std::span<const double> at,
+                         std::vector<DoubleDouble>& values, int columns);
+
+/// Each end p + 1 times.
+std::vector<double> clamped_knots(double low, const std::vector<double>& inner, double high, int p);
+/// For interpolation at these parameters (The NURBS Book, (9.8)): by averaging.
+std::vector<double> averaged_knots(std::span<const double> parameters, int p);
 
 }  // namespace knotwave::curves

@@ -102,7 +102,7 @@ class Words {
 // From the unit circle about (0, 0) onto the page.
 struct EllipseFrame {
   DoubleDouble centre_x, centre_y, radius_x, radius_y;
-  Direction axis;
+  UnitVector axis;
 
   Place place(DoubleDouble x, DoubleDouble y) const {
     const DoubleDouble a = radius_x * x, b = radius_y * y;
@@ -121,7 +121,7 @@ class PathReader {
   Place point();
   void add(std::vector<Place> points);
   void add_arc(double radius_x, double radius_y, double turn_deg, bool large, bool sweep, Place to);
-  void add_quarters(Direction from, Direction to, bool sweep, int halvings,
+  void add_quarters(UnitVector from, UnitVector to, bool sweep, int halvings,
                     const EllipseFrame& frame, Place end);
   void close();
   void end_subpath();
@@ -152,10 +152,10 @@ void PathReader::add(std::vector<Place> points) {
   now_ = points.back();
 }
 
-void PathReader::add_quarters(Direction from, Direction to, bool sweep, int halvings,
+void PathReader::add_quarters(UnitVector from, UnitVector to, bool sweep, int halvings,
                               const EllipseFrame& frame, Place end) {
   if (halvings > 0) {
-    const Direction middle = half_way(from, to, sweep);
+    const UnitVector middle = half_way(from, to, sweep);
     add_quarters(from, middle, sweep, halvings - 1, frame, frame.place(middle.x, middle.y));
     add_quarters(middle, to, sweep, halvings - 1, frame, end);
     return;
@@ -201,8 +201,8 @@ void PathReader::add_arc(double radius_x, double radius_y, double turn_deg, bool
   const Place centre = frame.place(centre_x, centre_y);  // from the middle of the chord
   frame.centre_x = DoubleDouble(centre.x) + DoubleDouble::sum(now_.x, to.x) / DoubleDouble(2.0);
   frame.centre_y = DoubleDouble(centre.y) + DoubleDouble::sum(now_.y, to.y) / DoubleDouble(2.0);
-  const Direction from = direction_of(x - centre_x, y - centre_y);
-  const Direction until = direction_of(-x - centre_x, -y - centre_y);
+  const UnitVector from = direction_of(x - centre_x, y - centre_y);
+  const UnitVector until = direction_of(-x - centre_x, -y - centre_y);
   const bool obtuse = (from.x * until.x + from.y * until.y).hi < 0;
   const int halvings = large && !half_circle ? 2 : obtuse ? 1 : 0;
   add_quarters(from, until, sweep, halvings, frame, to);

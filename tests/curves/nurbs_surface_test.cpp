@@ -10,7 +10,7 @@
 
 #include "knotwave/base/index.h"
 
-#include "random_curve.h"
+#include "random_surface.h"
 #include "support/seed.h"
 
 namespace knotwave::test {
@@ -22,26 +22,6 @@ using curves::Side;
 using curves::SurfaceSpec;
 
 using base::index_of;
-
-SurfaceSpec random_surface_spec(Dice& dice) {
-  SurfaceSpec spec;
-  spec.name = "random";
-  spec.degree_u = 1 + dice.below(7);
-  spec.degree_v = 1 + dice.below(5);
-  spec.dim = 1 + dice.below(3);
-  spec.count_u = spec.degree_u + 1 + dice.below(5);
-  spec.count_v = spec.degree_v + 1 + dice.below(5);
-  spec.periodic_u = dice.one_in(2);
-  const int count = spec.count_u * spec.count_v;
-  for (int i = 0; i < count * spec.dim; ++i) spec.points.push_back(dice.between(-1, 1));
-  if (dice.one_in(2)) {
-    for (int i = 0; i < count; ++i) spec.weights.push_back(dice.between(0.1, 3));
-  }
-  if (!spec.periodic_u && dice.one_in(2)) {
-    for (int i = 0; i < spec.count_u + spec.degree_u + 1; ++i) spec.knots_u.push_back(i * i);
-  }
-  return spec;
-}
 
 NurbsSurface made(SurfaceSpec spec) {
   auto surface = NurbsSurface::create(std::move(spec));
@@ -143,6 +123,41 @@ TEST(NurbsSurface, PartialsAreThoseOfTheIsoCurves) {
     }
     EXPECT_EQ(of(2, 2, 0), 0);  // beyond k + l <= order
   }
+}
+
+// At u = 0.5 the surface has an edge, along v at 0.25 too.
+TEST(NurbsSurface, PartialsAreThoseOfTheSideAskedForInEachDirection) {
+  SurfaceSpec spec = patch();
+  spec.degree_u = spec.degree_v = 1;
+  spec.count_u = spec.count_v = 3;
+  spec.points = {0, 1, 0, 2, 7, 2, 0, 1, 0};
+  spec.knots_v = {0, 0, 0.25, 1, 1};
+  const NurbsSurface surface = made(spec);
+  double all[4];
+  const auto slopes = [&](Side side_u, Side side_v) {
+    surface.derivatives(0.5, side_u, 0.25, side_v, 1, all);
+    EXPECT_EQ(all[0], 7);
+    return std::pair(all[2], all[1]);
+  };
+  EXPECT_EQ(slopes(Side::left, Side::left), std::pair(10.0, 24.0));
+  EXPECT_EQ(slopes(Side::right, Side::left), std::pair(-10.0, 24.0));
+  EXPECT_EQ(slopes(Side::left, Side::right), std::pair(10.0, -8.0));
+  EXPECT_EQ(slopes(Side::right, Side::right), std::pair(-10.0, -8.0));
+}
+
+// The seam of a period has a corner: seen from the left it is the end, from the right the start.
+TEST(NurbsSurface, PartialsHaveSidesAtTheSeamOfAPeriod) {
+  SurfaceSpec spec = patch();
+  spec.degree_u = 1;
+  spec.periodic_u = true;
+  const NurbsSurface surface = made(spec);
+  double left[4], right[4], at_end[4];
+  surface.derivatives(0, Side::left, 0.5, Side::right, 1, left);
+  surface.derivatives(0, Side::right, 0.5, Side::right, 1, right);
+  surface.derivatives(1, Side::right, 0.5, Side::right, 1, at_end);
+  EXPECT_EQ(left[0], right[0]);
+  EXPECT_NE(left[2], right[2]);
+  EXPECT_EQ(right[2], at_end[2]);
 }
 
 TEST(NurbsSurface, MixedPartialIsTheSlopeOfTheSlope) {

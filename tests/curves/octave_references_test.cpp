@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Edits against those of the Octave NURBS toolbox (tools/make_octave_references.m): the same knots,
-// and the same control points and weights up to its rounding.
+// and the same control points and weights up to its rounding. Surfaces: the same values.
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -11,6 +11,7 @@
 #include "knotwave/curves/algorithms.h"
 #include "knotwave/curves/reduce.h"
 #include "knotwave/curves/reparametrize.h"
+#include "knotwave/curves/surface_shapes.h"
 
 namespace knotwave::test {
 namespace {
@@ -84,6 +85,44 @@ TEST(OctaveReferences, EditsGiveTheSameControlPoints) {
     }
   }
   EXPECT_EQ(edits, 18);
+}
+
+Result<curves::NurbsSurface> shape_of(const std::string& name, const std::vector<double>& with,
+                                      const std::vector<NurbsCurve>& of) {
+  if (name == "ruled") return ruled(of.at(0), of.at(1));
+  if (name == "revolved") return revolved(of.at(0), with.at(0));
+  return coons(of.at(0), of.at(1), of.at(2), of.at(3));
+}
+
+TEST(OctaveReferences, SurfacesHaveTheSameValues) {
+  std::ifstream file(KNOTWAVE_SOURCE_DIR "/tests/golden/curves/octave_nurbs.txt");
+  ASSERT_TRUE(file);
+  int shapes = 0;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string what, name;
+    words >> what >> name;
+    if (what != "shape") continue;
+    SCOPED_TRACE(line);
+    std::vector<double> with;
+    for (double number = 0; words >> number;) with.push_back(number);
+    std::vector<NurbsCurve> operands;
+    const int count = name == "revolved" ? 1 : name == "ruled" ? 2 : 4;
+    for (int i = 0; i < count; ++i) {
+      const int degree = static_cast<int>(numbers_after(file, "degree").at(0));
+      operands.push_back(next_curve(file, degree));
+    }
+    const auto ours = shape_of(name, with, operands);
+    ASSERT_TRUE(ours) << ours.error().message;
+    for (int i = 0; i < 25; ++i) {
+      const std::vector<double> at = numbers_after(file, "at");
+      double value[3] = {0, 0, 0};
+      ours->evaluate(at.at(0), at.at(1), value);
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(value[c], at.at(c + 2), kItsRounding);
+    }
+    ++shapes;
+  }
+  EXPECT_EQ(shapes, 6);
 }
 
 // The toolbox's nrbdegelev does not: its curves move by up to 0.08.

@@ -215,6 +215,22 @@ TEST(Plot, SamePictureEveryTime) {
   EXPECT_EQ(plot_png(decay()), plot_png(decay()));
 }
 
+// 60 x 32 tiles, each outlined in its own colour; the last zone cuts 32 of them in thirds.
+TEST(Plot, ATrimmedSurfaceShowsWhatIsKeptAndItsBorder) {
+  const auto tiles = [](double u_high) {
+    const auto zone =
+        curves::TrimRegion::create(std::vector{*curves::rectangle_loop(0, u_high, 0, 1)});
+    const std::string svg = plot_svg(hill(), *zone);
+    EXPECT_THAT(svg, HasSubstr("trimmed"));
+    EXPECT_EQ(count_of(svg, "stroke=\"#222831\" stroke-width=\"2\""), 1);
+    EXPECT_FALSE(plot_png(hill(), *zone).empty());
+    return count_of(svg, "stroke-width=\"0.8\"");
+  };
+  EXPECT_EQ(tiles(1), 60 * 32);
+  EXPECT_EQ(tiles(0.5), 30 * 32);
+  EXPECT_EQ(tiles((30 + 2 / 6.0 + 0.01) / 60), 30 * 32 + 32 * 6 * 2);
+}
+
 TEST(Plot, AnyCurveCanBeDrawn) {
   Dice dice(support::test_seed());
   curves::PlotOptions options;

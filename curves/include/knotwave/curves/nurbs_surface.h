@@ -50,9 +50,14 @@ class NurbsSurface {
   /// S(u, v) to out[dim]. [any] Parameters clamped (u wrapped if periodic); NaN counts as minimum.
   void evaluate(double u, double v, std::span<double> out) const noexcept;
 
-  /// All partials d^(k+l)S / du^k dv^l with k, l <= order and k + l <= order, to
-  /// out[(order+1)*(order+1)*dim] at index (k*(order+1)+l)*dim; the rest is set to 0. [any]
+  /// All partials d^(k+l)S / du^k dv^l with k + l <= order <= kMaxDegree, to
+  /// out[(order+1)*(order+1)*dim] at index (k*(order+1)+l)*dim; the rest is set to 0. [any] Correct
+  /// for weights (A4.4). At a knot each direction has its own side; without, those of the spans to
+  /// the right, at the end of the domain to the left. O(order^2 (p + 1) (q + 1)) in double-double,
+  /// rational ones O(order^4) more, no allocation.
   void derivatives(double u, double v, int order, std::span<double> out) const noexcept;
+  void derivatives(double u, Side side_u, double v, Side side_v, int order,
+                   std::span<double> out) const noexcept;
 
   /// The curve u -> S(u, v0) (exact). [control]
   NurbsCurve iso_curve_at_v(double v0) const;

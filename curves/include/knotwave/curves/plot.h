@@ -8,6 +8,7 @@
 
 #include "knotwave/curves/nurbs_curve.h"
 #include "knotwave/curves/nurbs_surface.h"
+#include "knotwave/curves/trim_region.h"
 
 namespace knotwave::curves {
 
@@ -24,6 +25,11 @@ std::string plot_svg(const NurbsSurface& surface, const PlotOptions& options = {
 /// The same picture as PNG bytes.
 std::vector<std::uint8_t> plot_png(const NurbsCurve& curve, const PlotOptions& options = {});
 std::vector<std::uint8_t> plot_png(const NurbsSurface& surface, const PlotOptions& options = {});
+/// What a region of the (u, v) plane keeps of a surface, with its borders.
+std::string plot_svg(const NurbsSurface& surface, const TrimRegion& kept,
+                     const PlotOptions& options = {});
+std::vector<std::uint8_t> plot_png(const NurbsSurface& surface, const TrimRegion& kept,
+                                   const PlotOptions& options = {});
 /// For a terminal, in UTF-8: a line of text, then `rows` lines of `columns` characters. A curve in
 /// Braille dots with its knots below it, a surface as shades of its height.
 std::string plot_text(const NurbsCurve& curve, int columns = 72, int rows = 14);

@@ -16,8 +16,8 @@
 namespace knotwave::curves {
 namespace {
 
-using base::number_text;
 using base::index_of;
+using base::number_text;
 
 // Two borders that face each other, on one clamped knot vector.
 struct Borders {

@@ -5,6 +5,7 @@
 #include "knotwave/base/index.h"
 #include "knotwave/curves/surface_shapes.h"
 
+#include "chords.h"
 #include "homogeneous_net.h"
 #include "spline_fit.h"
 #include "surface_rows.h"
@@ -14,25 +15,27 @@ namespace {
 
 using base::index_of;
 
-// Square root of the distance from point `index` of one row to that of another.
-double step_between(const NurbsCurve& from, const NurbsCurve& to, int index) {
-  double square = 0;
-  for (int c = index * from.dim(); c < (index + 1) * from.dim(); ++c) {
-    const double along = to.points()[index_of(c)] - from.points()[index_of(c)];
-    square += along * along;
+// Square roots of the distances from row to row, of point `index` of each.
+std::vector<double> column_steps(const std::vector<NurbsCurve>& rows, int index) {
+  const int dim = rows.front().dim();
+  std::vector<double> column;
+  for (const NurbsCurve& row : rows) {
+    const auto point = row.points().subspan(index_of(index * dim), index_of(dim));
+    column.insert(column.end(), point.begin(), point.end());
   }
-  return std::sqrt(std::sqrt(square));
+  std::vector<double> steps = chords(column, dim);
+  for (double& step : steps) step = std::sqrt(step);
+  return steps;
 }
 
 // The mean of what each column that moves would have for itself (10.8).
 Result<std::vector<double>> centripetal_positions(const std::vector<NurbsCurve>& rows) {
   std::vector<double> steps(rows.size(), 0.0);
   for (int i = 0; i < rows.front().point_count(); ++i) {
+    const std::vector<double> column = column_steps(rows, i);
     double total = 0;
-    for (std::size_t k = 1; k < rows.size(); ++k) total += step_between(rows[k - 1], rows[k], i);
-    for (std::size_t k = 1; k < rows.size() && total > 0; ++k) {
-      steps[k] += step_between(rows[k - 1], rows[k], i) / total;
-    }
+    for (const double step : column) total += step;
+    for (std::size_t k = 1; k < rows.size() && total > 0; ++k) steps[k] += column[k - 1] / total;
   }
   std::vector<double> positions{0};
   for (std::size_t k = 1; k < rows.size(); ++k) {

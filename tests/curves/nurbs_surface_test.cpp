@@ -75,6 +75,31 @@ TEST(NurbsSurface, SweptArcKeepsItsRadius) {
   }
 }
 
+// The NURBS Book, 2nd ed., example 4.3: S(5/2, 1) = (2, 98/27, 68/27). Its nine weighted points.
+TEST(NurbsSurface, BookExample43) {
+  constexpr double kWeighted[3][3][4] = {{{0, 2, 4, 1}, {0, 6, 4, 2}, {0, 2, 0, 1}},
+                                         {{4, 6, 8, 2}, {12, 24, 12, 6}, {4, 6, 0, 2}},
+                                         {{4, 2, 4, 1}, {8, 6, 4, 2}, {4, 2, 0, 1}}};
+  SurfaceSpec spec;
+  spec.degree_u = spec.degree_v = 2;
+  spec.dim = 3;
+  spec.count_u = 8;
+  spec.count_v = 5;
+  spec.knots_u = {0, 0, 0, 1, 2, 3, 4, 4, 5, 5, 5};
+  spec.knots_v = {0, 0, 0, 1, 2, 3, 3, 3};
+  spec.points.resize(8 * 5 * 3, 7.0);
+  spec.weights.resize(8 * 5, 1.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t place = (j + 1) * 8 + i + 2;
+      const double weight = kWeighted[i][j][3];
+      spec.weights[place] = weight;
+      for (std::size_t c = 0; c < 3; ++c) spec.points[place * 3 + c] = kWeighted[i][j][c] / weight;
+    }
+  }
+  EXPECT_THAT(at(made(spec), 2.5, 1), testing::ElementsAre(2, 98.0 / 27, 68.0 / 27));
+}
+
 TEST(NurbsSurface, IsoCurvesAreTheSurfaceWithin4Ulp) {
   Dice dice(support::test_seed());
   for (int round = 0; round < 500; ++round) {

@@ -218,8 +218,8 @@ TEST(Plot, SamePictureEveryTime) {
 // 60 x 32 tiles, each outlined in its own colour; the last zone cuts 32 of them in thirds.
 TEST(Plot, ATrimmedSurfaceShowsWhatIsKeptAndItsBorder) {
   const auto tiles = [](double u_high) {
-    const auto zone =
-        curves::TrimRegion::create(std::vector{*curves::rectangle_loop(0, u_high, 0, 1)});
+    const auto zone = curves::TrimRegion::create(
+        std::vector<curves::TrimLoop>{*curves::rectangle_loop(0, u_high, 0, 1)});
     const std::string svg = plot_svg(hill(), *zone);
     EXPECT_THAT(svg, HasSubstr("trimmed"));
     EXPECT_EQ(count_of(svg, "stroke=\"#222831\" stroke-width=\"2\""), 1);

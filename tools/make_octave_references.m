@@ -88,8 +88,7 @@ upright = profile;
 upright.coefs(3, :) = profile.coefs(2, :);
 upright.coefs(2, :) = 0;
 for turn = [0.25, 0.5, 1]
-  ## Theirs runs along the profile first.
-  around = nrbtransp(nrbrevolve(upright, [0, 0, 0], [0, 0, 1], 2 * pi * turn));
+  around = nrbrevolve(upright, [0, 0, 0], [0, 0, 1], 2 * pi * turn);
   shape("revolved", turn, {profile}, around);
 end
 

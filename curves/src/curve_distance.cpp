@@ -128,7 +128,8 @@ double distance_bound(const BezierPiece& a, const BezierPiece& b, int dim, doubl
 
 double distance_bound(std::span<const BezierPiece> a, std::span<const BezierPiece> b, int dim,
                       double limit) {
-  constexpr int kMostHalvings = 10;
+  // Rows of a family stay as far apart as they are, however short the part.
+  const int most_halvings = a.size() == 1 ? 10 : 3;
   std::vector<Pair> open(1);
   for (const BezierPiece& piece : a) open.front().a.push_back(piece.points);
   for (const BezierPiece& piece : b) {
@@ -144,7 +145,7 @@ double distance_bound(std::span<const BezierPiece> a, std::span<const BezierPiec
     if (found > limit) return std::numeric_limits<double>::infinity();
     const double upper = hull_bound(pair, dim);
     if (upper <= bound) continue;
-    if (upper <= found * 1.0625 || pair.halvings == kMostHalvings) {
+    if (upper <= found * 1.0625 || pair.halvings == most_halvings) {
       bound = upper;
       continue;
     }

@@ -5,6 +5,8 @@
 // Polynomial degree reduction in the L2-norm equals best Euclidean approximation of Bézier
 // coefficients, CAGD 16 (1999)); an elevated curve misses by no more than its own rounding. (A5.11
 // reduces span by span and then removes knots, each step with the noise of the one before.)
+#include "degree_reduction.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -221,32 +223,36 @@ bool solve_points(HomogeneousCurve& frame, const std::vector<BezierPiece>& piece
   return true;
 }
 
+Error missed(const NurbsCurve& curve, const std::string& why) {
+  return fail(ErrorCode::error_bound_missed, "curve '" + curve.name() + "': at degree " +
+                                                 std::to_string(curve.degree() - 1) + " " + why);
+}
+
 }  // namespace
 
-Result<ReducedCurve> reduce_degree(const NurbsCurve& curve, double tolerance) {
-  const std::string what = "curve '" + curve.name() + "': ";
+Error with_tolerance(Error error, double tolerance) {
+  if (error.code == ErrorCode::error_bound_missed) {
+    error.message += ", the tolerance is " + number_text(tolerance);
+  }
+  return error;
+}
+
+Result<NurbsCurve> least_squares_reduction(const NurbsCurve& curve) {
   if (curve.degree() == 1) {
-    return fail(ErrorCode::degree_out_of_range, what + "degree 0 is outside 1..15");
+    return fail(ErrorCode::degree_out_of_range,
+                "curve '" + curve.name() + "': degree 0 is outside 1..15");
   }
-  if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
-    return fail(ErrorCode::value_out_of_range,
-                what + "a tolerance of " + number_text(tolerance) + " is not a number from 0 up");
-  }
-  const auto missed = [&](const std::string& error) {
-    return fail(ErrorCode::error_bound_missed,
-                what + "at degree " + std::to_string(curve.degree() - 1) + " " + error +
-                    ", the tolerance is " + number_text(tolerance));
-  };
   HomogeneousCurve before(curve);
   if (!curve.is_periodic()) before = before.clamped_part(curve.u_min(), curve.u_max());
-  const std::vector<BezierPiece> pieces = bezier_pieces(before);
   const std::vector<Knot> inner = reduced_knots(before);
   if (curve.is_periodic() && static_cast<int>(inner.size()) < curve.degree()) {
-    return missed("a period would have " + std::to_string(inner.size()) + " points and needs " +
-                  std::to_string(curve.degree()));
+    return missed(curve, "a period would have " + std::to_string(inner.size()) +
+                             " points and needs " + std::to_string(curve.degree()));
   }
   HomogeneousCurve after = reduced_frame(before, inner);
-  if (!solve_points(after, pieces)) return missed("a weight would not be positive");
+  if (!solve_points(after, bezier_pieces(before))) {
+    return missed(curve, "a weight would not be positive");
+  }
   CurveSpec spec;
   spec.name = curve.name();
   spec.degree = after.degree;
@@ -255,10 +261,23 @@ Result<ReducedCurve> reduce_degree(const NurbsCurve& curve, double tolerance) {
   spec.jumps.assign(curve.jumps().begin(), curve.jumps().end());
   after.write_to(spec);
   auto result = NurbsCurve::create(std::move(spec));
-  if (!result) return missed("there is no curve (" + result.error().message + ")");
+  if (!result) return missed(curve, "there is no curve (" + result.error().message + ")");
+  return result;
+}
+
+Result<ReducedCurve> reduce_degree(const NurbsCurve& curve, double tolerance) {
+  if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
+    return fail(ErrorCode::value_out_of_range, "curve '" + curve.name() + "': a tolerance of " +
+                                                   number_text(tolerance) +
+                                                   " is not a number from 0 up");
+  }
+  auto result = least_squares_reduction(curve);
+  if (!result) return with_tolerance(result.error(), tolerance);
   constexpr double kNoLimit = 1e300;
   const double error = distance_bound(std::span(&curve, 1), std::span(&*result, 1), kNoLimit);
-  if (!(error <= tolerance)) return missed("it is up to " + number_text(error) + " away");
+  if (!(error <= tolerance)) {
+    return with_tolerance(missed(curve, "it is up to " + number_text(error) + " away"), tolerance);
+  }
   return ReducedCurve{std::move(*result), 1, error};
 }
 

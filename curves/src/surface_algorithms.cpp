@@ -10,6 +10,8 @@
 #include "knotwave/curves/reparametrize.h"
 
 #include "curve_distance.h"
+#include "degree_reduction.h"
+#include "knot_removal.h"
 #include "surface_rows.h"
 
 namespace knotwave::curves {
@@ -30,11 +32,20 @@ Result<NurbsSurface> edit_rows(const NurbsSurface& surface, Direction direction,
   return with_rows(surface, direction, rows);
 }
 
-Result<void> check_tolerance(const NurbsSurface& surface, Direction direction, double tolerance) {
-  if (tolerance >= 0 && std::isfinite(tolerance)) return {};
-  return fail(ErrorCode::value_out_of_range, name_along(surface, direction) + ": a tolerance of " +
-                                                 number_text(tolerance) +
-                                                 " is not a number from 0 up");
+// Each row with `times` knots fewer; nothing if one of them has no such curve.
+std::vector<NurbsCurve> without_knots(std::span<const NurbsCurve> rows, double at, int times) {
+  std::vector<NurbsCurve> after;
+  for (const NurbsCurve& row : rows) {
+    HomogeneousCurve all(row);
+    const KnotRun run = run_of(all, at);
+    if (run.spare < times || !remove_knots_of(all, run, times)) return {};
+    CurveSpec spec = row.spec();
+    all.write_to(spec);
+    auto smaller = NurbsCurve::create(std::move(spec));
+    if (!smaller) return {};
+    after.push_back(std::move(*smaller));
+  }
+  return after;
 }
 
 }  // namespace
@@ -98,16 +109,12 @@ Result<NurbsSurface> transpose(const NurbsSurface& surface) {
 
 Result<ReducedSurface> remove_knot(const NurbsSurface& surface, Direction direction, double at,
                                    int times, double tolerance) {
-  if (auto good = check_tolerance(surface, direction, tolerance); !good) return good.error();
   const std::vector<NurbsCurve> before = rows_along(surface, direction);
-  for (int wanted = std::min(times, before.front().degree()); wanted != 0; --wanted) {
-    std::vector<NurbsCurve> after;
-    for (const NurbsCurve& row : before) {
-      auto reduced = remove_knot(row, at, wanted, tolerance);
-      if (!reduced) return told_of(surface, direction, reduced.error());
-      if (reduced->removed == wanted) after.push_back(std::move(reduced->curve));
-    }
-    if (after.size() < before.size()) continue;
+  const auto possible = remove_knot(before.front(), at, std::min(times, 0), tolerance);
+  if (!possible) return told_of(surface, direction, possible.error());
+  for (int wanted = std::min(times, before.front().degree()); wanted > 0; --wanted) {
+    const std::vector<NurbsCurve> after = without_knots(before, at, wanted);
+    if (after.empty()) continue;
     const double error = distance_bound(before, after, tolerance);
     if (!(error <= tolerance)) continue;
     auto smaller = with_rows(surface, direction, after);
@@ -119,13 +126,19 @@ Result<ReducedSurface> remove_knot(const NurbsSurface& surface, Direction direct
 
 Result<ReducedSurface> reduce_degree(const NurbsSurface& surface, Direction direction,
                                      double tolerance) {
-  if (auto good = check_tolerance(surface, direction, tolerance); !good) return good.error();
+  if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
+    return fail(ErrorCode::value_out_of_range, name_along(surface, direction) +
+                                                   ": a tolerance of " + number_text(tolerance) +
+                                                   " is not a number from 0 up");
+  }
   const std::vector<NurbsCurve> before = rows_along(surface, direction);
   std::vector<NurbsCurve> after;
   for (const NurbsCurve& row : before) {
-    auto reduced = reduce_degree(row, tolerance);
-    if (!reduced) return told_of(surface, direction, reduced.error());
-    after.push_back(std::move(reduced->curve));
+    auto reduced = least_squares_reduction(row);
+    if (!reduced) {
+      return with_tolerance(told_of(surface, direction, reduced.error()), tolerance);
+    }
+    after.push_back(std::move(*reduced));
   }
   constexpr double kNoLimit = 1e300;
   const double error = distance_bound(before, after, kNoLimit);

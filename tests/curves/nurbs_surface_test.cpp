@@ -190,6 +190,7 @@ TEST(NurbsSurface, MixedPartialIsTheSlopeOfTheSlope) {
   for (int round = 0; round < 300; ++round) {
     SurfaceSpec spec = random_surface_spec(dice);
     spec.knots_u.clear();
+    spec.knots_v.clear();
     spec.degree_v = std::max(spec.degree_v, 2);
     spec.count_v = spec.degree_v + 1;  // one span along v: differences meet no knot
     spec.points.resize(index_of(spec.count_u * spec.count_v * spec.dim), 0.5);

@@ -273,7 +273,7 @@ TEST(Lofted, FaultsSayWhatIsMissing) {
   const std::vector<NurbsCurve> two = {a, b}, same = {a, a};
   EXPECT_EQ(lofted(two, 2).error().message, "lofting: degree 2 needs 3 rows, found 2");
   EXPECT_EQ(lofted(two, 0).error().code, ErrorCode::degree_out_of_range);
-  EXPECT_EQ(lofted({}, 1).error().code, ErrorCode::too_few_points);
+  EXPECT_EQ(curves::lofted({}, 1).error().code, ErrorCode::too_few_points);
   EXPECT_EQ(lofted(same, 1).error().message,
             "lofting: rows 0 and 1 are the same; only given positions have a step between them");
   EXPECT_EQ(lofted(two, 1, std::vector<double>{0}).error().message,

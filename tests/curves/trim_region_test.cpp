@@ -294,7 +294,7 @@ TEST(TrimRegion, InsideIsWhatTheBorderWindsAround) {
       EXPECT_EQ(region->contains(u, v), *expected) << u << " " << v;
       const auto is_in = [](const std::vector<Interval>& kept, double x) {
         return std::any_of(kept.begin(), kept.end(),
-                           [x](const Interval& i) { return x >= i.low && x <= i.high; });
+                           [x](const Interval& part) { return x >= part.low && x <= part.high; });
       };
       EXPECT_EQ(is_in(region->intervals_at_v(v), u), *expected);
       EXPECT_EQ(is_in(region->intervals_at_u(u), v), *expected);

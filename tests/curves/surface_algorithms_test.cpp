@@ -174,7 +174,7 @@ TEST(SurfaceEdits, AToleranceThatIsTooSmallKeepsTheKnot) {
   EXPECT_EQ(kept->removed, 0);
   EXPECT_EQ(kept->max_error, 0);
   EXPECT_TRUE(kept->surface == surface);
-  const auto gone = remove_knot(surface, Direction::u, 0.5, 1, 5);
+  const auto gone = remove_knot(surface, Direction::u, 0.5, 1, 20);
   ASSERT_TRUE(gone) << gone.error().message;
   EXPECT_EQ(gone->removed, 1);
   EXPECT_GT(gone->max_error, 0.1);

@@ -30,7 +30,7 @@ struct CompatibleCurves {
 /// with both sides equal. Curves that are compatible already are returned as they are. Errors:
 /// dimension_mismatch, too_many_points, knot_multiplicity (knots fell together).
 Result<CompatibleCurves> make_compatible(const NurbsCurve& first, const NurbsCurve& second);
-/// The same for any number of curves: each rounded once, however many there are.
+/// The same for any number of curves; more of them round none more often.
 Result<std::vector<NurbsCurve>> make_compatible(std::span<const NurbsCurve> curves);
 
 /// (1 - amount) first + amount second, in homogeneous points of the compatible curves; amount 0 and

@@ -6,6 +6,7 @@
 
 #include "knotwave/base/document.h"
 
+#include "cubic_spans.h"
 #include "piece_fit.h"
 
 namespace knotwave::curves {
@@ -136,6 +137,13 @@ ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& 
 
 ProgramParts exact_parts(const NurbsCurve& curve, const std::vector<ControlRange>& controls) {
   ProgramParts parts = frame_of(curve, controls);
+  if (curve.degree() == 3 && !curve.is_rational() && controls.empty()) {
+    CubicSpans spans = cubic_spans(curve);
+    parts.degree = 3;
+    parts.breaks = std::move(spans.breaks);
+    parts.coefficients = std::move(spans.coefficients);
+    return parts;
+  }
   const auto is_weight = [](const ControlRange& c) { return c.kind == ControlRange::Kind::weight; };
   parts.degree = curve.degree();
   parts.rational = curve.is_rational() || std::any_of(controls.begin(), controls.end(), is_weight);
@@ -169,6 +177,22 @@ Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions&
   }
   pieces.lay_out(parts);
   return parts;
+}
+
+double rounding_bound(const ProgramParts& parts) {
+  // Of the power k: 1 rounding of the coefficient, 2 k + 1 of Horner's products and sums, and 4 k
+  // of t, which is a difference times an inverse of a width (Higham, Accuracy and Stability of
+  // Numerical Algorithms, 2nd ed., 5.1). Clamping to the hull only brings a value nearer.
+  constexpr double kUnit = 0x1p-53 * (1 + 0x1p-40);
+  double worst = 0;
+  for (std::size_t row = 0; row < parts.coefficients.size(); row += parts.powers()) {
+    double error = 0;
+    for (std::size_t k = 0; k < parts.powers(); ++k) {
+      error += static_cast<double>(6 * k + 2) * std::abs(parts.coefficients[row + k]);
+    }
+    worst = std::max(worst, error);
+  }
+  return kUnit * worst;
 }
 
 Result<double> measured_error(const CurveProgram& program, const NurbsCurve& curve,

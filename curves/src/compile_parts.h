@@ -20,6 +20,10 @@ Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions&
 /// Hull, controls, period, and the values at clamped ends: all but the pieces.
 ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& controls);
 
+/// What a program of exact_parts() can be from the curve, by its coefficients: proved, for pieces
+/// without weights or controls.
+double rounding_bound(const ProgramParts& parts);
+
 /// Whether knots leave every span a width whose inverse is a normal number.
 Result<void> check_widths(const NurbsCurve& curve);
 

@@ -36,9 +36,8 @@ void render_run(const PieceWalk& walk, const GridRun& run, std::span<Float> out,
   const std::int64_t count = static_cast<std::int64_t>(out.size());
   const bool exact = indices_are_exact(run, count);
   for (std::int64_t i = 0; i < count;) {
-    const Place place = walk.place(run.at(i), cursor.piece);
+    const auto [place, length] = walk.stretch(run, i, count - i, cursor.piece);
     cursor.piece = place.piece;
-    const std::int64_t length = walk.run_length(place, run, i, count - i);
     const auto part = out.subspan(static_cast<std::size_t>(i), static_cast<std::size_t>(length));
     if (place.kind != Place::Kind::piece) {
       std::fill(part.begin(), part.end(), static_cast<Float>(walk.value(place, 0, {})));

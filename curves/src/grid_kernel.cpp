@@ -7,6 +7,8 @@
 
 #include "knotwave/curves/curve_program.h"
 
+#include "fast_kernel.h"
+
 // SSSE3 machines take the baseline.
 #define HWY_DISABLED_TARGETS HWY_SSSE3
 #undef HWY_TARGET_INCLUDE
@@ -38,18 +40,25 @@ HWY_INLINE Vector horner(const double* HWY_RESTRICT c, Vector t) {
 HWY_INLINE Vector clamp_to(Vector y, double low, double high) {
   const Vector least = hn::Set(kLanes, low);
   const Vector most = hn::Set(kLanes, high);
+#if HWY_ARCH_X86
+  // maxpd and minpd give their second operand where the two are equal or one is NaN, which are the
+  // bits of clamp_to_hull().
+  return hn::Min(most, hn::Max(least, y));
+#else
   y = hn::IfThenElse(hn::Lt(y, least), least, y);
   return hn::IfThenElse(hn::Gt(y, most), most, y);
+#endif
 }
 
-/// u to value, without controls.
-template <int Degree, bool Rational, bool Clamp>
+/// u to value, without controls. Shifted: whole periods are taken off u; taking off 0 would change
+/// no bit.
+template <int Degree, bool Rational, bool Clamp, bool Shifted>
 struct Piece {
   PieceTask task;
 
   HWY_INLINE Vector at(Vector u) const {
-    const Vector local =
-        hn::Sub(hn::Sub(u, hn::Set(kLanes, task.shift)), hn::Set(kLanes, task.start));
+    if constexpr (Shifted) u = hn::Sub(u, hn::Set(kLanes, task.shift));
+    const Vector local = hn::Sub(u, hn::Set(kLanes, task.start));
     const Vector t = hn::Mul(local, hn::Set(kLanes, task.inverse_width));
     Vector y = horner<Degree>(task.numerator, t);
     if constexpr (Rational) y = hn::Div(y, horner<Degree>(task.denominator, t));
@@ -83,7 +92,16 @@ HWY_INLINE void render_grid(const Evaluator& piece, double origin, double step, 
     store(piece.at(hn::Add(first, hn::Mul(node, by))), out + i);
     node = hn::Add(node, stride);
   }
-  if (i < n) store_part(piece.at(hn::Add(first, hn::Mul(node, by))), out + i, n - i);
+  if (i == n) return;
+  // The last full vector once more, shifted back: a node's bits do not hang on its lane.
+  const bool shifted = n >= lanes;
+  if (shifted) node = hn::Iota(kLanes, index + static_cast<double>(n - lanes));
+  const Vector y = piece.at(hn::Add(first, hn::Mul(node, by)));
+  if (shifted) {
+    store(y, out + (n - lanes));
+  } else {
+    store_part(y, out, n);
+  }
 }
 
 template <class Evaluator>
@@ -99,13 +117,18 @@ HWY_INLINE void render_array(const Evaluator& piece, const double* HWY_RESTRICT 
 }
 
 /// Calls run(Piece<...>) with what the task says fixed at compile time.
+template <int Degree, bool Rational, class Run>
+HWY_INLINE void with_form(const PieceTask& task, const Run& run) {
+  // A shifted piece is clamped where it need not be: that changes no bit either.
+  if (task.shift != 0) return run(Piece<Degree, Rational, true, true>{task});
+  if (task.clamp) return run(Piece<Degree, Rational, true, false>{task});
+  return run(Piece<Degree, Rational, false, false>{task});
+}
+
 template <int Degree, class Run>
 HWY_INLINE void with_degree(const PieceTask& task, const Run& run) {
-  if (task.denominator == nullptr) {
-    task.clamp ? run(Piece<Degree, false, true>{task}) : run(Piece<Degree, false, false>{task});
-  } else {
-    task.clamp ? run(Piece<Degree, true, true>{task}) : run(Piece<Degree, true, false>{task});
-  }
+  task.denominator == nullptr ? with_form<Degree, false>(task, run)
+                              : with_form<Degree, true>(task, run);
 }
 
 template <class Run>
@@ -246,8 +269,15 @@ const GridKernels& grid_kernels() KNOTWAVE_RT {
 void set_simd_level(SimdLevel level) {
   const bool baseline = level == SimdLevel::baseline;
   level_in_use = level;
+  select_fast_kernels(level);
   kernels_in_use = baseline ? HWY_STATIC_DISPATCH(kernels)() : HWY_DYNAMIC_DISPATCH(kernels)();
   name_in_use = baseline ? HWY_STATIC_DISPATCH(target_name)() : HWY_DYNAMIC_DISPATCH(target_name)();
+#if HWY_TARGETS & HWY_AVX2
+  if (level == SimdLevel::narrow && (hwy::SupportedTargets() & HWY_AVX2) != 0) {
+    kernels_in_use = N_AVX2::kernels();
+    name_in_use = N_AVX2::target_name();
+  }
+#endif
 }
 
 SimdLevel simd_level() KNOTWAVE_RT { return level_in_use.load(std::memory_order_relaxed); }

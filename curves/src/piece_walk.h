@@ -65,6 +65,9 @@ class PieceWalk {
   }
 
   double u_min() const KNOTWAVE_RT { return u_min_; }
+  double inverse_width(const Place& place) const KNOTWAVE_RT {
+    return program_.inverse_widths_[at(place.piece)];
+  }
 
   /// Parameters that lie in a piece for certain: low <= u < high, and u > u_min.
   struct Range {
@@ -79,6 +82,26 @@ class PieceWalk {
     // Nodes never turn back, so those of one place are neighbours and the far end decides.
     if (limit <= 1 || contains(place, run.at(first + limit - 1))) return limit;
     return border(place, run, first, limit);
+  }
+
+  /// The nodes from `first` on that lie in one place, at most `limit`; `hint` is a piece.
+  struct Stretch {
+    Place place;
+    std::int64_t length;
+  };
+  Stretch stretch(const GridRun& run, std::int64_t first, std::int64_t limit,
+                  int hint) const KNOTWAVE_RT {
+    // Most blocks lie in the piece of the block before: both ends do, and nodes never turn back.
+    if (!program_.periodic_ && hint >= 0 && hint < program_.piece_count()) {
+      const double a = run.at(first), b = run.at(first + limit - 1);
+      const double low = a < b ? a : b, high = a < b ? b : a;
+      const double* const breaks = program_.breaks_.data() + hint;
+      if (low >= breaks[0] && high < breaks[1] && low > u_min_) {
+        return {{Place::Kind::piece, hint, 0}, limit};
+      }
+    }
+    const Place here = place(run.at(first), hint);
+    return {here, run_length(here, run, first, limit)};
   }
 
   /// The piece as kernels read it.

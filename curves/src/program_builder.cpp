@@ -4,25 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "piece_bounds.h"
+
 namespace knotwave::curves {
 namespace {
-
-double binomial(int n, int k) {
-  double value = 1;
-  for (int i = 1; i <= k; ++i) value = value * (n - k + i) / i;
-  return value;
-}
-
-/// Bernstein coefficients of a power-basis row: they bound it on t in [0, 1].
-std::vector<double> to_bernstein(const double* row, int degree) {
-  std::vector<double> b(static_cast<std::size_t>(degree) + 1, 0.0);
-  for (int j = 0; j <= degree; ++j) {
-    for (int k = 0; k <= j; ++k) {
-      b[static_cast<std::size_t>(j)] += binomial(j, k) / binomial(degree, k) * row[k];
-    }
-  }
-  return b;
-}
 
 double size_of(const double* row, int degree) {
   double sum = 0;
@@ -35,17 +20,19 @@ double size_of(const double* row, int degree) {
 /// Stability of Numerical Algorithms, 2nd ed., 5.1); 1e-12 leaves room for the bound's own
 /// rounding.
 bool stays_inside(const double* n, const double* d, int degree, double low, double high) {
-  const std::vector<double> top = to_bernstein(n, degree);
-  std::vector<double> bottom(top.size(), 1.0);
+  const auto powers = static_cast<std::size_t>(degree) + 1;
+  const PieceRow top = bernstein_row({n, powers});
+  PieceRow bottom;
+  bottom.fill(1.0);
   double margin = 1e-12 * size_of(n, degree);
   if (d != nullptr) {
-    bottom = to_bernstein(d, degree);
-    const double least = *std::min_element(bottom.begin(), bottom.end());
+    bottom = bernstein_row({d, powers});
+    const double least = *std::min_element(bottom.begin(), bottom.begin() + degree + 1);
     const double weight = 1e-12 * size_of(d, degree);
     if (!(least > 2 * weight)) return false;
     margin = (margin + weight * std::max(std::abs(low), std::abs(high))) / (least - weight);
   }
-  for (std::size_t j = 0; j < top.size(); ++j) {
+  for (std::size_t j = 0; j < powers; ++j) {
     const double y = top[j] / bottom[j];
     if (!(y - margin > low && y + margin < high)) return false;
   }

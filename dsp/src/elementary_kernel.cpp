@@ -256,7 +256,7 @@ std::atomic<const ElementaryKernels*> best_kernels = HWY_DYNAMIC_DISPATCH(elemen
 
 const ElementaryKernels& elementary_kernels_in_use() KNOTWAVE_RT {
   const ElementaryKernels* const best = best_kernels.load(std::memory_order_relaxed);
-  return best != nullptr && curves::simd_level() == curves::SimdLevel::best
+  return best != nullptr && curves::simd_level() != curves::SimdLevel::baseline
              ? *best
              : *HWY_STATIC_DISPATCH(elementary_kernels)();
 }

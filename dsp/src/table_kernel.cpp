@@ -274,7 +274,7 @@ std::atomic<const TableKernels*> best_kernels = HWY_DYNAMIC_DISPATCH(table_kerne
 
 const TableKernels& table_kernels_in_use() KNOTWAVE_RT {
   const TableKernels* const best = best_kernels.load(std::memory_order_relaxed);
-  return best != nullptr && curves::simd_level() == curves::SimdLevel::best
+  return best != nullptr && curves::simd_level() != curves::SimdLevel::baseline
              ? *best
              : *HWY_STATIC_DISPATCH(table_kernels)();
 }

@@ -33,6 +33,8 @@ class CurveProgram {
   double u_max() const KNOTWAVE_RT { return breaks_.back(); }
   /// Where pieces meet, [piece_count + 1], increasing.
   std::span<const double> breaks() const KNOTWAVE_RT { return breaks_; }
+  /// 1 / (width of a piece), [piece_count].
+  std::span<const double> inverse_widths() const KNOTWAVE_RT { return inverse_widths_; }
   /// Largest |program - curve| found by the check in compile(), in output units, with no control
   /// moved and at the corners of their ranges. Fitted pieces: raised by 4 % for what lies between
   /// the places looked at.
@@ -103,8 +105,9 @@ class CurveProgram {
   std::vector<double> control_rest_, control_low_, control_high_;
 };
 
-/// Which vector unit grids are rendered with. Both give the same bits; tests and benchmarks choose.
-enum class SimdLevel { best, baseline };
+/// Which vector unit grids are rendered with. All give the same bits; tests and benchmarks choose.
+/// narrow: AVX2 where AVX-512 would be best; other modules' kernels take it as best.
+enum class SimdLevel { best, narrow, baseline };
 /// [control], before any audio runs.
 void set_simd_level(SimdLevel level);
 /// What was set; other modules' kernels follow it. [any]

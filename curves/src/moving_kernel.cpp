@@ -145,7 +145,7 @@ const MovingKernel best_kernel = HWY_DYNAMIC_DISPATCH(kernel)();
 }  // namespace
 
 MovingKernel moving_kernel() KNOTWAVE_RT {
-  const bool best = best_kernel != nullptr && simd_level() == SimdLevel::best;
+  const bool best = best_kernel != nullptr && simd_level() != SimdLevel::baseline;
   return best ? best_kernel : HWY_STATIC_DISPATCH(kernel)();
 }
 

@@ -332,7 +332,8 @@ TEST(FastProgram, EveryBuildAndVectorUnitGivesTheSameBits) {
       const double error = program.max_error() - program.accurate().max_error();
       hash.update(std::as_bytes(std::span(&error, 1)));
     }
-    EXPECT_EQ(hash.finish_hex(), "ffc47e313fa723f80960b45b55658ebd70d884a224c6e8b5dcc074beb69ea1ed") << simd_level_name();
+    EXPECT_EQ(hash.finish_hex(), "ffc47e313fa723f80960b45b55658ebd70d884a224c6e8b5dcc074beb69ea1ed")
+        << simd_level_name();
   }
 }
 

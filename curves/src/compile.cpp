@@ -73,8 +73,9 @@ Result<CurveProgram> checked_program(const NurbsCurve& curve, ProgramParts parts
   return program;
 }
 
-Result<CurveProgram> fitted_program(const NurbsCurve& curve, const CompileOptions& options) {
-  auto parts = fitted_parts(curve, options);
+Result<CurveProgram> fitted_program(const NurbsCurve& curve, const CompileOptions& options,
+                                    Meeting meeting) {
+  auto parts = fitted_parts(curve, options, meeting);
   if (!parts) return parts.error();
   return checked_program(curve, std::move(*parts), options);
 }
@@ -92,7 +93,10 @@ Result<CurveProgram> compile_parametric(const NurbsCurve& curve, const CompileOp
     // Weights a million to one apart can round away too much; shorter pieces then still meet it.
     if (exact || !options.controls.empty()) return exact;
   }
-  if (options.controls.empty()) return fitted_program(curve, options);
+  if (options.controls.empty()) {
+    const bool is_high = curve.degree() > kMaxPieceDegree;
+    return fitted_program(curve, options, is_high ? Meeting::slope : Meeting::value);
+  }
   return no_controls(curve, "above degree " + std::to_string(kMaxPieceDegree) +
                                 ", this curve has degree " + std::to_string(curve.degree()));
 }
@@ -105,7 +109,7 @@ Result<CurveProgram> compile_polynomial(const NurbsCurve& curve, const CompileOp
   if (!curve.is_rational() && curve.degree() <= kMaxPieceDegree && !moves_weight) {
     return exact_program(curve, options);
   }
-  if (options.controls.empty()) return fitted_program(curve, options);
+  if (options.controls.empty()) return fitted_program(curve, options, Meeting::value);
   return no_controls(curve, "where weights or a degree above 7 are made polynomial");
 }
 

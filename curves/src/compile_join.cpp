@@ -130,11 +130,10 @@ JoinProgram::Deltas JoinProgram::join_c0_from(double program_value,
 
 Result<JoinProgram> compile_join(const NurbsCurve& curve, double u_join,
                                  const CompileOptions& options) {
-  if (curve.degree() > kMaxPieceDegree || curve.dim() > 2) {
-    return fail(ErrorCode::unsupported,
-                "curve '" + curve.name() +
-                    "': joins are for degree 1..7 and 1 or 2 coordinates, not " +
-                    std::to_string(curve.degree()) + " and " + std::to_string(curve.dim()));
+  if (curve.dim() > 2) {
+    return fail(ErrorCode::unsupported, "curve '" + curve.name() +
+                                            "': joins are for 1 or 2 coordinates, not " +
+                                            std::to_string(curve.dim()));
   }
   if (auto checked = check_controls(curve, options.controls); !checked) return checked.error();
   const bool timed = curve.dim() == 2;

@@ -158,7 +158,8 @@ ProgramParts exact_parts(const NurbsCurve& curve, const std::vector<ControlRange
   return parts;
 }
 
-Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions& options) {
+Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions& options,
+                                  Meeting meeting) {
   ProgramParts parts = frame_of(curve, {});
   const FitLimits limits{options.max_error, options.max_pieces, parts.low, parts.high};
   FittedPieces pieces;
@@ -168,7 +169,12 @@ Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions&
       const DoubleDouble t = (u - DoubleDouble(span.u0)) / width;
       for (int c = 0; c < span.dim; ++c) out[at(c)] = coordinate_at(span, c, t);
     };
-    if (!fit_pieces(target, span.u0, span.u1, limits, pieces)) {
+    const FitTarget slopes = [&](DoubleDouble u, std::span<DoubleDouble> out) {
+      const DoubleDouble t = (u - DoubleDouble(span.u0)) / width;
+      for (int c = 0; c < span.dim; ++c) out[at(c)] = coordinate_slope_at(span, c, t) / width;
+    };
+    if (!fit_pieces(target, span.u0, span.u1, limits, pieces,
+                    meeting == Meeting::slope ? &slopes : nullptr)) {
       return too_many_pieces(curve, options);
     }
   }

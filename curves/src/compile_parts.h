@@ -14,8 +14,11 @@ namespace knotwave::curves {
 /// Every span of the curve as it is: no error but rounding. Degree <= kMaxPieceDegree.
 ProgramParts exact_parts(const NurbsCurve& curve, const std::vector<ControlRange>& controls);
 
+/// How fitted pieces of a span meet: in value, or in value and slope.
+enum class Meeting { value, slope };
 /// Every span within max_error by polynomial pieces: for rational spans and high degrees.
-Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions& options);
+Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions& options,
+                                  Meeting meeting);
 
 /// Hull, controls, period, and the values at clamped ends: all but the pieces.
 ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& controls);

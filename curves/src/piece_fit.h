@@ -39,9 +39,10 @@ struct FittedPieces {
 };
 
 /// Appends pieces of `target` over [u_a, u_b]; neighbours share the value at their break to the
-/// bit. A piece between two neighbouring doubles is taken as it is: no u lies inside it. False when
-/// max_pieces are not enough.
+/// bit, and with `slopes` (dy/du of all outputs) the slope to rounding. A piece between two
+/// neighbouring doubles is taken as it is: no u lies inside it. False when max_pieces are not
+/// enough.
 bool fit_pieces(const FitTarget& target, double u_a, double u_b, const FitLimits& limits,
-                FittedPieces& pieces);
+                FittedPieces& pieces, const FitTarget* slopes = nullptr);
 
 }  // namespace knotwave::curves

@@ -67,4 +67,13 @@ DoubleDouble coordinate_at(const SpanPolynomial& span, int coordinate, DoubleDou
   return span.has_weights ? value / polynomial_at(span.row(span.dim), t) : value;
 }
 
+DoubleDouble coordinate_slope_at(const SpanPolynomial& span, int coordinate,
+                                 DoubleDouble t) noexcept {
+  const DoubleDouble slope = polynomial_slope_at(span.row(coordinate), t);
+  if (!span.has_weights) return slope;
+  const auto weight = span.row(span.dim);
+  return (slope - coordinate_at(span, coordinate, t) * polynomial_slope_at(weight, t)) /
+         polynomial_at(weight, t);
+}
+
 }  // namespace knotwave::curves

@@ -37,4 +37,8 @@ DoubleDouble polynomial_slope_at(std::span<const DoubleDouble> c, DoubleDouble t
 /// Coordinate `coordinate` at t.
 DoubleDouble coordinate_at(const SpanPolynomial& span, int coordinate, DoubleDouble t) noexcept;
 
+/// Its derivative by t, of any span without or with weights.
+DoubleDouble coordinate_slope_at(const SpanPolynomial& span, int coordinate,
+                                 DoubleDouble t) noexcept;
+
 }  // namespace knotwave::curves

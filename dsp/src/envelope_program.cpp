@@ -75,13 +75,6 @@ Result<EnvelopeProgram> EnvelopeProgram::create(const curves::NurbsCurve& curve,
         ErrorCode::value_out_of_range,
         "an envelope lasts more than 0 and less than 1e9 seconds, not " + text(spec.seconds));
   }
-  if (curve.degree() > curves::kMaxPieceDegree) {
-    return fail(ErrorCode::unsupported, "an envelope's curve may have degree 1 to " +
-                                            std::to_string(curves::kMaxPieceDegree) + ": '" +
-                                            curve.name() + "' has " +
-                                            std::to_string(curve.degree()) +
-                                            "; draw it with a lower degree and more points");
-  }
   auto program = curves::compile_function(curve, spec.compile);
   if (!program) return program.error();
   if (auto checked = check_places(spec, *program); !checked) return checked.error();

@@ -65,6 +65,41 @@ TEST(CompileJoin, BeginsWithTheValueAndSlopeAskedAndLeavesTheTailAlone) {
   EXPECT_GT(free, 10);
 }
 
+TEST(CompileJoin, HighDegreesJoinValueAndSlopeToo) {
+  const std::uint64_t seed = support::test_seed();
+  int free = 0;
+  for (int i = 0; i < support::test_count(60); ++i) {
+    Draws draw(seed + 3, i);
+    testing::RandomCurveOptions random;
+    random.min_degree = 8;
+    random.max_degree = 15;
+    random.periodic = false;
+    const NurbsCurve curve = random_curve(draw, random);
+    const double length = curve.u_max() - curve.u_min();
+    const double u = curve.u_min() + (i % 4 == 0 ? 0.0 : draw.between(0, 0.8)) * length;
+    const auto program = compile_function(curve);
+    const auto join = compile_join(curve, u);
+    ASSERT_TRUE(program);
+    ASSERT_TRUE(join) << join.error().message;
+    EXPECT_LE(join->basis.max_error(), 1e-7);
+    const double value0 = draw.between(program->low(), program->high());
+    const double slope0 = draw.between(-3, 3);
+    // As an envelope asks: from what the program itself does there.
+    const auto deltas = join->join_from(program->at_u(u), program->slope_at_u(u), value0, slope0);
+    EXPECT_NEAR(joined(*program, *join, deltas, u), value0, 1e-12);
+    const double slope = program->slope_at_u(u) + deltas.dp0 * join->basis.slope_at_u(u, 0) +
+                         deltas.dp1 * join->basis.slope_at_u(u, 1);
+    if (!deltas.limited) {
+      ++free;
+      EXPECT_NEAR(slope, slope0, 1e-10 * (1 + join->slope_factor));
+    }
+    for (double tail = join->u_basis_end; tail <= curve.u_max(); tail += length / 50) {
+      EXPECT_EQ(joined(*program, *join, deltas, tail), program->at_u(tail));
+    }
+  }
+  EXPECT_GT(free, 10);
+}
+
 TEST(CompileJoin, IsTheCurveWithItsFirstTwoPointsMoved) {
   const NurbsCurve curve = rational({0, 0.9, 0.2, 0.6, -0.3, 0}, {1, 2, 0.5, 1, 3, 1}, 3);
   const auto program = compile_function(curve);

@@ -59,6 +59,34 @@ TEST(Compile, HigherDegreesAreFittedWithinTheirBound) {
   }
 }
 
+TEST(Compile, FittedPiecesOfHighDegreeMeetInSlope) {
+  const std::uint64_t seed = support::test_seed();
+  int met = 0;
+  for (int i = 0; i < support::test_count(60); ++i) {
+    Draws draw(seed + 9, i);
+    testing::RandomCurveOptions random;
+    random.min_degree = 8;
+    random.max_degree = 15;
+    const NurbsCurve curve = random_curve(draw, random);
+    const auto program = compile_parametric(curve);
+    ASSERT_TRUE(program) << program.error().message;
+    const auto breaks = program->breaks();
+    for (int k = 1; k < program->piece_count(); ++k) {
+      const double u = breaks[static_cast<std::size_t>(k)];
+      const auto knots = curve.knots();
+      if (std::find(knots.begin(), knots.end(), u) != knots.end()) continue;
+      const double before = std::nextafter(u, curve.u_min());
+      double exact[2];
+      curve.derivatives(u, 1, Side::right, exact);
+      const double size = 1e-10 * (1 + std::abs(exact[1])) / (u - breaks[std::size_t(k) - 1]);
+      EXPECT_NEAR(program->slope_at_u(u), exact[1], size) << i;
+      EXPECT_NEAR(program->slope_at_u(before), exact[1], size) << i;
+      ++met;
+    }
+  }
+  EXPECT_GT(met, 100);
+}
+
 TEST(Compile, RationalSpansBecomePolynomialWithinTheirBound) {
   const std::uint64_t seed = support::test_seed();
   for (int i = 0; i < support::test_count(150); ++i) {

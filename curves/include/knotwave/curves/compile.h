@@ -25,14 +25,15 @@ struct CompileOptions {
 };
 
 /// A curve as a function. dim 1: u is the parameter, degree <= 7 stays exact, above that pieces of
-/// degree 7 are fitted and checked. dim 2: x is the parameter (time) and y the value, the inversion
-/// is baked into explicit pieces (u_min = x at the start). Vertical tangents are allowed and meet
-/// max_error at every double; where x stands still y jumps. docs/compile.md has the method.
-/// Errors: not_a_function (x goes back: the message gives the interval of u), not_scalar (dim > 2),
-/// error_bound_missed, control_conflict (point and weight of the same index, or two controls for
-/// the same number), value_out_of_range (a control's range leaves the limits of curve files or
-/// leaves out the value written there; knots closer than 1e-280), empty_domain (2-D: x never
-/// moves), unsupported (controls on a 2-D curve or on degree > 7).
+/// degree 7 are fitted and checked; they meet in value and, to rounding, in slope. dim 2: x is the
+/// parameter (time) and y the value, the inversion is baked into explicit pieces (u_min = x at the
+/// start). Vertical tangents are allowed and meet max_error at every double; where x stands still y
+/// jumps. docs/compile.md has the method. Errors: not_a_function (x goes back: the message gives
+/// the interval of u), not_scalar (dim > 2), error_bound_missed, control_conflict (point and weight
+/// of the same index, or two controls for the same number), value_out_of_range (a control's range
+/// leaves the limits of curve files or leaves out the value written there; knots closer than
+/// 1e-280), empty_domain (2-D: x never moves), unsupported (controls on a 2-D curve or on degree >
+/// 7).
 Result<CurveProgram> compile_function(const NurbsCurve& curve, const CompileOptions& options = {});
 
 /// Every coordinate as a function of u (waveforms, orbits, arcs). Errors as above but
@@ -83,7 +84,9 @@ struct JoinProgram {
   Deltas join_c0_from(double program_value, double value0) const KNOTWAVE_RT;
 };
 
-/// dim 1 or 2 (function form), degree <= 7. u_join is a parameter of the compiled function (for 2-D
+/// dim 1 or 2 (function form). Above degree 7 the bases are fitted as compile_function() fits the
+/// curve: value and slope join all the same, and what B0 and B1 play between is within max_error of
+/// them. u_join is a parameter of the compiled function (for 2-D
 /// curves a time). Errors: parameter_out_of_range, and those of compile_function.
 Result<JoinProgram> compile_join(const NurbsCurve& curve, double u_join,
                                  const CompileOptions& options = {});

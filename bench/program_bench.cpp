@@ -119,6 +119,26 @@ void with_controls(benchmark::State& state, int controls) {
   count_samples(state);
 }
 
+/// A knot that moves: de Boor's algorithm at every sample.
+void with_a_knot(benchmark::State& state, int degree, bool rational) {
+  CompileOptions options;
+  options.controls = {{ControlRange::Kind::knot, degree + 8, 0, 7.2 / 16, 8.8 / 16}};
+  const CurveProgram program =
+      std::move(*compile_function(wavy(degree, degree + 16, rational), options));
+  std::vector<double> u(kBlock), out(kBlock), moving(kBlock);
+  const double* const values[] = {moving.data()};
+  for (std::size_t i = 0; i < kBlock; ++i) moving[i] = 0.5 + 0.0005 * double(i);
+  CurveCursor cursor;
+  GridRun run{0, 1.0 / double(kPeriod), 0};
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < kBlock; ++i) u[i] = run.at(std::int64_t(i));
+    program.render(u, values, out, cursor);
+    benchmark::DoNotOptimize(out.data());
+    run.first = (run.first + std::int64_t(kBlock)) % kPeriod;
+  }
+  count_samples(state);
+}
+
 void compile_easing(benchmark::State& state, double x1, double y1, double x2, double y2) {
   CurveSpec spec;
   spec.name = "easing";
@@ -182,6 +202,9 @@ BENCHMARK_CAPTURE(array, in_order_with_jitter_64_spans, 64, 0.001);
 BENCHMARK_CAPTURE(array, random_u_64_spans, 64, 1.0);
 BENCHMARK_CAPTURE(with_controls, one_weight, 1);
 BENCHMARK_CAPTURE(with_controls, four_weights, 4);
+BENCHMARK_CAPTURE(with_a_knot, cubic, 3, false);
+BENCHMARK_CAPTURE(with_a_knot, rational_cubic, 3, true);
+BENCHMARK_CAPTURE(with_a_knot, degree_7, 7, false);
 BENCHMARK_CAPTURE(moving_points, cubic, 3);
 BENCHMARK_CAPTURE(moving_points, degree_7, 7);
 BENCHMARK_CAPTURE(compile_exact, cubic_64_points, 64);

@@ -106,6 +106,7 @@ Result<CurveProgram> compile_polynomial(const NurbsCurve& curve, const CompileOp
   const bool moves_weight =
       std::any_of(options.controls.begin(), options.controls.end(),
                   [](const ControlRange& c) { return c.kind == ControlRange::Kind::weight; });
+  if (moves_knots(options.controls)) return no_controls(curve, "on knots in the polynomial form");
   if (!curve.is_rational() && curve.degree() <= kMaxPieceDegree && !moves_weight) {
     return exact_program(curve, options);
   }

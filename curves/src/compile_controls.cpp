@@ -20,12 +20,56 @@ int written_points(const CurveSpec& spec) {
 
 std::string name_of(const NurbsCurve& curve, const ControlRange& control, std::size_t index) {
   std::string name = "curve '" + curve.name() + "': control " + std::to_string(index) + " (";
+  if (control.kind == Kind::knot) return name + "knot " + std::to_string(control.point) + ")";
   if (control.kind == Kind::coordinate) {
     name += "coordinate " + std::to_string(control.coordinate) + " of ";
   } else {
     name += "weight of ";
   }
   return name + "point " + std::to_string(control.point) + ")";
+}
+
+std::string range_of(const ControlRange& control) {
+  return base::number_text(control.low) + ".." + base::number_text(control.high);
+}
+
+Result<void> check_rest(const CurveSpec& spec, const ControlRange& control,
+                        const std::string& name) {
+  const double rest = rest_value(spec, control);
+  if (rest >= control.low && rest <= control.high) return {};
+  return fail(ErrorCode::value_out_of_range, name + ": the curve has " + base::number_text(rest) +
+                                                 " there, outside the range " + range_of(control));
+}
+
+/// How near a moved knot may come to the next one, as a part of the domain.
+constexpr double kLeastGap = 1e-9;
+
+Result<void> check_knot(const CurveSpec& spec, const std::vector<ControlRange>& controls,
+                        const ControlRange& control, const std::string& name) {
+  const int outer = spec.periodic ? 0 : spec.degree;
+  const int first = outer + 1, last = static_cast<int>(spec.knots.size()) - outer - 2;
+  if (control.point < first || control.point > last) {
+    return fail(ErrorCode::value_out_of_range,
+                name + ": " +
+                    (last < first ? "the curve has no inner knots"
+                                  : "the inner knots of the curve are " + std::to_string(first) +
+                                        ".." + std::to_string(last)));
+  }
+  double below = spec.knots[at(control.point - 1)], above = spec.knots[at(control.point + 1)];
+  for (const ControlRange& other : controls) {
+    if (other.kind != Kind::knot) continue;
+    if (other.point == control.point - 1) below = std::max(below, other.high);
+    if (other.point == control.point + 1) above = std::min(above, other.low);
+  }
+  const double domain = spec.knots[spec.knots.size() - 1 - at(outer)] - spec.knots[at(outer)];
+  if (control.low <= control.high && control.low - below >= kLeastGap * domain &&
+      above - control.high >= kLeastGap * domain) {
+    return check_rest(spec, control, name);
+  }
+  return fail(ErrorCode::value_out_of_range,
+              name + ": its range " + range_of(control) +
+                  " does not stay between its neighbours, which come as near as " +
+                  base::number_text(below) + " and " + base::number_text(above));
 }
 
 Result<void> check_range(const CurveSpec& spec, const ControlRange& control,
@@ -48,17 +92,12 @@ Result<void> check_range(const CurveSpec& spec, const ControlRange& control,
                                                    " is not within " + base::number_text(least) +
                                                    ".." + base::number_text(most));
   }
-  const double rest = rest_value(spec, control);
-  if (rest < control.low || rest > control.high) {
-    return fail(ErrorCode::value_out_of_range,
-                name + ": the curve has " + base::number_text(rest) + " there, outside the range " +
-                    base::number_text(control.low) + ".." + base::number_text(control.high));
-  }
-  return {};
+  return check_rest(spec, control, name);
 }
 
 bool in_conflict(const ControlRange& a, const ControlRange& b) {
   if (a.point != b.point) return false;
+  if (a.kind == Kind::knot || b.kind == Kind::knot) return a.kind == b.kind;
   if (a.kind == Kind::coordinate && b.kind == Kind::coordinate) return a.coordinate == b.coordinate;
   return true;  // the same weight twice, or w P with both moving
 }
@@ -74,7 +113,9 @@ Result<void> check_controls(const NurbsCurve& curve, const std::vector<ControlRa
   const CurveSpec spec = curve.spec();
   for (std::size_t k = 0; k < controls.size(); ++k) {
     const std::string name = name_of(curve, controls[k], k);
-    if (auto checked = check_range(spec, controls[k], name); !checked) return checked;
+    auto checked = controls[k].kind == Kind::knot ? check_knot(spec, controls, controls[k], name)
+                                                  : check_range(spec, controls[k], name);
+    if (!checked) return checked;
     for (std::size_t other = 0; other < k; ++other) {
       if (!in_conflict(controls[k], controls[other])) continue;
       return fail(ErrorCode::control_conflict,
@@ -85,7 +126,13 @@ Result<void> check_controls(const NurbsCurve& curve, const std::vector<ControlRa
   return {};
 }
 
+bool moves_knots(const std::vector<ControlRange>& controls) {
+  return std::any_of(controls.begin(), controls.end(),
+                     [](const ControlRange& control) { return control.kind == Kind::knot; });
+}
+
 double rest_value(const CurveSpec& spec, const ControlRange& control) {
+  if (control.kind == Kind::knot) return spec.knots[at(control.point)];
   if (control.kind == Kind::coordinate) {
     return spec.points[at(control.point * spec.dim + control.coordinate)];
   }
@@ -99,7 +146,8 @@ HomogeneousCurve control_term(const NurbsCurve& curve, const ControlRange& contr
     HomogeneousPoint& point = term.points[at(i)];
     point.x = {};
     point.w = 0.0;
-    if (i % written != control.point) continue;  // a periodic curve has its first points twice
+    if (control.kind == Kind::knot || i % written != control.point)
+      continue;  // a periodic curve has its first points twice
     if (control.kind == Kind::coordinate) {
       point.x[at(control.coordinate)] = curve.weights()[at(i)];
       continue;
@@ -116,6 +164,10 @@ Result<NurbsCurve> curve_with(const NurbsCurve& curve, const std::vector<Control
                               const std::vector<double>& values) {
   CurveSpec spec = curve.spec();
   for (std::size_t k = 0; k < controls.size(); ++k) {
+    if (controls[k].kind == Kind::knot) {
+      spec.knots[at(controls[k].point)] = values[k];
+      continue;
+    }
     if (controls[k].kind == Kind::coordinate) {
       spec.points[at(controls[k].point * spec.dim + controls[k].coordinate)] = values[k];
       continue;

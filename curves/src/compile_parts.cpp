@@ -7,6 +7,7 @@
 #include "knotwave/base/document.h"
 
 #include "cubic_spans.h"
+#include "live_spline.h"
 #include "piece_fit.h"
 
 namespace knotwave::curves {
@@ -155,6 +156,7 @@ ProgramParts exact_parts(const NurbsCurve& curve, const std::vector<ControlRange
   for (std::size_t k = 0; k < controls.size(); ++k) {
     place_term(parts, span_polynomials(control_term(curve, controls[k])), k + 1);
   }
+  if (moves_knots(controls)) parts.live = std::make_shared<const LiveSpline>(curve, controls);
   return parts;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "live_spline.h"
 #include "piece_walk.h"
 
 namespace knotwave::curves {
@@ -53,6 +54,16 @@ void render_run(const PieceWalk& walk, const GridRun& run, std::span<Float> out,
   }
 }
 
+/// Where knots move: u as the curve's own parameter, its ends beyond them.
+LiveSpline::Jet live_at(const LiveSpline& spline, const PieceWalk& walk, double u, int coordinate,
+                        const ControlMoves& moves) KNOTWAVE_RT {
+  const Place place = walk.place(u, 0);
+  const double inside = place.kind == Place::Kind::piece   ? u - place.shift
+                        : place.kind == Place::Kind::start ? walk.u_min()
+                                                           : walk.u_max();
+  return spline.at(inside, coordinate, std::span(moves.by, at(moves.count)));
+}
+
 /// Samples taken one by one, without a hint, where they jump from piece to piece.
 constexpr std::size_t kScattered = 32;
 
@@ -98,13 +109,21 @@ std::span<const double> CurveProgram::coefficients(int piece, int coordinate) co
 double CurveProgram::at_u(double u, int coordinate,
                           std::span<const double> controls) const KNOTWAVE_RT {
   const PieceWalk walk(*this, coordinate);
-  return walk.value(walk.place(u, 0), u, walk.moves(controls));
+  const ControlMoves moves = walk.moves(controls);
+  if (live_ != nullptr && moves.count == control_count()) {
+    const double y = live_at(*live_, walk, u, coordinate, moves).value;
+    return clamp_to_hull(y, low(coordinate), high(coordinate));
+  }
+  return walk.value(walk.place(u, 0), u, moves);
 }
 
 double CurveProgram::slope_at_u(double u, int coordinate,
                                 std::span<const double> controls) const KNOTWAVE_RT {
   const PieceWalk walk(*this, coordinate);
   const ControlMoves moves = walk.moves(controls);
+  if (live_ != nullptr && moves.count == control_count()) {
+    return live_at(*live_, walk, u, coordinate, moves).slope;
+  }
   const Place place = walk.place(u, 0);
   const PieceTask task = walk.task(place);
   double t = ((u - place.shift) - task.start) * task.inverse_width;
@@ -171,7 +190,12 @@ void CurveProgram::render(std::span<const double> u, std::span<const double* con
   }
   const PieceWalk walk(*this, coordinate);
   const std::size_t count = std::min(u.size(), out.size());
-  for (std::size_t i = 0; i < count;) {
+  for (std::size_t i = 0; live_ != nullptr && i < count; ++i) {
+    double values[kMaxControls];
+    for (int k = 0; k < control_count(); ++k) values[k] = controls[at(k)][i];
+    out[i] = at_u(u[i], coordinate, {values, at(control_count())});
+  }
+  for (std::size_t i = 0; live_ == nullptr && i < count;) {
     const Place place = walk.place(u[i], cursor.piece);
     cursor.piece = place.piece;
     const std::size_t n = same_place(walk, place, u.subspan(i, count - i));

@@ -68,6 +68,7 @@ class PieceWalk {
   double inverse_width(const Place& place) const KNOTWAVE_RT {
     return program_.inverse_widths_[at(place.piece)];
   }
+  double u_max() const KNOTWAVE_RT { return u_max_; }
 
   /// Parameters that lie in a piece for certain: low <= u < high, and u > u_min.
   struct Range {

@@ -71,6 +71,7 @@ CurveProgram ProgramBuilder::build(ProgramParts parts) {
   program.control_rest_ = std::move(parts.control_rest);
   program.control_low_ = std::move(parts.control_low);
   program.control_high_ = std::move(parts.control_high);
+  program.live_ = std::move(parts.live);
   return program;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Plain parts to a CurveProgram. Private to curves. [control]
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "knotwave/curves/curve_program.h"
@@ -19,6 +20,8 @@ struct ProgramParts {
   std::vector<double> start_values, end_values;  ///< [terms * dim] or empty
   std::vector<double> low, high;                 ///< [dim]
   std::vector<double> control_rest, control_low, control_high;
+
+  std::shared_ptr<const LiveSpline> live;
 
   std::size_t rows() const { return static_cast<std::size_t>(dim) + (rational ? 1U : 0U); }
   std::size_t terms() const { return 1 + control_rest.size(); }

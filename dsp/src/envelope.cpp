@@ -252,7 +252,7 @@ void Envelope::render_chunk(const EnvelopeProgram& program, std::int64_t first,
     curve.render(std::span<const double>(u).first(n), out, cursor_);
   }
   if (is_rest) return;
-  add_join(first, out);
+  add_join(program, first, out);
   const bool open_hold = stage_ == Stage::gate_open && program.has_sustain();
   if (last_place >= curve.u_max() && !open_hold) {
     stage_ = Stage::idle;
@@ -261,7 +261,8 @@ void Envelope::render_chunk(const EnvelopeProgram& program, std::int64_t first,
 }
 
 // What the join adds; both bases are exactly 0 from u_basis_end on.
-void Envelope::add_join(std::int64_t first, std::span<double> out) KNOTWAVE_RT {
+void Envelope::add_join(const EnvelopeProgram& program, std::int64_t first,
+                        std::span<double> out) KNOTWAVE_RT {
   if (join_ == nullptr) return;
   const curves::GridRun run{age_.u, u_per_sample_, first - age_.sample};
   std::size_t n = 0;
@@ -274,6 +275,9 @@ void Envelope::add_join(std::int64_t first, std::span<double> out) KNOTWAVE_RT {
   join_->basis.render(run, std::span(basis0).first(n), join_cursor_, 0);
   join_->basis.render(run, std::span(basis1).first(n), join_cursor_, 1);
   for (std::size_t i = 0; i < n; ++i) out[i] += deltas_.dp0 * basis0[i] + deltas_.dp1 * basis1[i];
+  if (program.program().moves_knots()) {  // the bases are those at rest: the hull has the last word
+    for (double& y : out.first(n)) y = std::clamp(y, join_->low, join_->high);
+  }
   if (brake_slope_ == 0) return;
   for (std::size_t i = 0; i < n; ++i) {
     const double x = (run.at(static_cast<std::int64_t>(i)) - join_->u_join) / brake_u_;

@@ -69,6 +69,12 @@ double worst_difference(const curves::CurveProgram& curve, double x0, double x1)
 
 Result<ShaperProgram> ShaperProgram::create_moving(const curves::NurbsCurve& curve,
                                                    std::span<const curves::ControlRange> controls) {
+  for (const curves::ControlRange& control : controls) {
+    if (control.kind != curves::ControlRange::Kind::knot) continue;
+    return fail(ErrorCode::unsupported,
+                "curve '" + curve.name() + "': knot " + std::to_string(control.point) +
+                    " of it moves; a shaper can follow points and weights, not knots");
+  }
   curves::CompileOptions options;
   options.controls.assign(controls.begin(), controls.end());
   auto program = curves::compile_function(curve, options);

@@ -84,24 +84,10 @@ Result<void> add_fitted_rows(const NurbsSurface& surface, double max_error,
   return fit_rows(row_at, breaks, max_error, builder);
 }
 
-/// The curve with the control at `value`.
-Result<NurbsCurve> with_control(const NurbsCurve& curve, const curves::ControlRange& control,
-                                double value) {
-  curves::CurveSpec spec = curve.spec();
-  const auto point = static_cast<std::size_t>(control.point);
-  if (control.kind == curves::ControlRange::Kind::weight) {
-    if (spec.weights.empty()) {
-      spec.weights.assign(spec.points.size() / static_cast<std::size_t>(spec.dim), 1.0);
-    }
-    spec.weights[point] = value;
-  } else {
-    spec.points[point * static_cast<std::size_t>(spec.dim) +
-                static_cast<std::size_t>(control.coordinate)] = value;
-  }
-  return NurbsCurve::create(std::move(spec));
-}
-
 Result<void> check_control(const NurbsCurve& curve, const curves::ControlRange& control) {
+  if (control.kind == curves::ControlRange::Kind::knot) {
+    return curves::check_controls(curve, {control});
+  }
   const auto points = static_cast<int>(curve.spec().points.size()) / curve.dim();
   if (control.point < 0 || control.point >= points) {
     return fail(ErrorCode::value_out_of_range, "'" + curve.name() + "' has points 0.." +
@@ -158,7 +144,7 @@ Result<WaveTables> WaveTables::create(const NurbsCurve& curve, const curves::Con
   if (!builder) return builder.error();
   if (control.kind == curves::ControlRange::Kind::coordinate) {  // linear: two rows are exact
     for (const double value : {control.low, control.high}) {
-      const auto added = add_curve(with_control(curve, control, value), *builder);
+      const auto added = add_curve(curves::curve_with(curve, {control}, {value}), *builder);
       if (!added) return added.error();
     }
     builder->blend_linearly();
@@ -167,7 +153,7 @@ Result<WaveTables> WaveTables::create(const NurbsCurve& curve, const curves::Con
   const RowAt row_at = [&](double position) -> Result<RowHarmonics> {
     const double value =
         position == 1 ? control.high : control.low + (control.high - control.low) * position;
-    const auto moved = with_control(curve, control, value);
+    const auto moved = curves::curve_with(curve, {control}, {value});
     if (!moved) return moved.error();
     return row_of(*moved, *builder);
   };

@@ -14,7 +14,15 @@ namespace knotwave::engine {
 namespace {
 
 constexpr bool moves_a_number(const MapSpec& map) {
-  return map.target == MapTarget::curve_weight || map.target == MapTarget::curve_point;
+  return map.target == MapTarget::curve_weight || map.target == MapTarget::curve_point ||
+         map.target == MapTarget::curve_knot;
+}
+
+constexpr curves::ControlRange::Kind kind_of(MapTarget target) {
+  using Kind = curves::ControlRange::Kind;
+  return target == MapTarget::curve_weight ? Kind::weight
+         : target == MapTarget::curve_knot ? Kind::knot
+                                           : Kind::coordinate;
 }
 
 constexpr bool varies_by_itself(MapSource source) {
@@ -36,6 +44,7 @@ PatchCompiler::Part PatchCompiler::map_part(int number, const char* key) const {
 }
 
 Result<void> PatchCompiler::check_range(const MovedNumber& moved) const {
+  if (moved.range.kind == curves::ControlRange::Kind::knot) return check_knot(moved);
   const curves::NurbsCurve* found = spec_.curves.find_curve(moved.curve);
   const curves::CurveSpec written = found->spec();
   const auto point = static_cast<std::size_t>(moved.range.point);
@@ -58,6 +67,19 @@ Result<void> PatchCompiler::check_range(const MovedNumber& moved) const {
       map_part(moved.map, rest < moved.range.low ? ".low" : ".high"));
 }
 
+// Against its neighbours too, and against the knots that earlier maps move.
+Result<void> PatchCompiler::check_knot(const MovedNumber& moved) const {
+  std::vector<curves::ControlRange> knots{moved.range};
+  for (const MovedNumber& other : moved_) {
+    const bool is_knot = other.range.kind == curves::ControlRange::Kind::knot;
+    // The same knot twice is told as a conflict of two maps.
+    if (!is_knot || other.curve != moved.curve || other.range.point == moved.range.point) continue;
+    knots.push_back(other.range);
+  }
+  auto ok = curves::check_controls(*spec_.curves.find_curve(moved.curve), knots);
+  return ok ? ok : about(ok.error(), map_part(moved.map, ".low"));
+}
+
 Result<void> PatchCompiler::collect_moved_numbers() {
   for (std::size_t i = 0; i < spec_.maps.size(); ++i) {
     const MapSpec& map = spec_.maps[i];
@@ -65,11 +87,9 @@ Result<void> PatchCompiler::collect_moved_numbers() {
     MovedNumber moved;
     moved.curve = map.target_curve;
     moved.map = static_cast<int>(i);
-    moved.range.kind = map.target == MapTarget::curve_weight
-                           ? curves::ControlRange::Kind::weight
-                           : curves::ControlRange::Kind::coordinate;
+    moved.range.kind = kind_of(map.target);
     moved.range.point = map.target_point;
-    moved.range.coordinate = map.target == MapTarget::curve_weight ? 0 : map.target_coordinate;
+    moved.range.coordinate = map.target == MapTarget::curve_point ? map.target_coordinate : 0;
     moved.range.low = map.low;
     moved.range.high = map.high;
     const Part part = map_part(moved.map, ".to");

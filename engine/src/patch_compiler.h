@@ -48,6 +48,7 @@ class PatchCompiler {
   Result<void> compile_lfos();
   Result<void> compile_maps();
   Result<void> check_range(const MovedNumber& moved) const;
+  Result<void> check_knot(const MovedNumber& moved) const;
   Result<void> check_source(MapSource source, int index) const;
   Result<void> check_target(const MapSpec& map) const;
   Result<void> check_map(const MapSpec& map, std::size_t number) const;

@@ -59,7 +59,8 @@ int whole_number(std::string_view text) {
 }
 
 bool is_curve_target(const MapSpec& map) {
-  return map.target == MapTarget::curve_weight || map.target == MapTarget::curve_point;
+  return map.target == MapTarget::curve_weight || map.target == MapTarget::curve_point ||
+         map.target == MapTarget::curve_knot;
 }
 
 // Targets that are there with a section of the patch.
@@ -73,6 +74,21 @@ int coordinate_index(std::string_view word) {
   if (word.size() != 1) return -1;
   const std::size_t found = kWords.find(word);
   return found == std::string_view::npos ? -1 : static_cast<int>(found);
+}
+
+// Knots as the file counts them; those at the ends stay.
+bool check_knot_index(base::TableReader& reader, const base::Node& at,
+                      const curves::NurbsCurve& curve, int index, std::string_view word) {
+  const int outer = curve.is_periodic() ? 0 : curve.degree();
+  const int first = outer + 1, last = static_cast<int>(curve.spec().knots.size()) - outer - 2;
+  if (index >= first && index <= last) return true;
+  reader.fail_at(at, ErrorCode::parameter_out_of_range,
+                 "curve '" + curve.name() + "' has " +
+                     (last < first ? "no inner knots"
+                                   : "the inner knots " + std::to_string(first) + " to " +
+                                         std::to_string(last)) +
+                     ", there is no inner knot '" + std::string(word) + "'");
+  return false;
 }
 
 }  // namespace
@@ -219,18 +235,21 @@ void PatchReader::read_map_target(TableReader& reader, MapSpec& map) {
   map.target_index = target->index;
 }
 
-// curve.NAME.weight.I, curve.NAME.point.I or curve.NAME.point.I.x
+// curve.NAME.weight.I, curve.NAME.point.I, curve.NAME.point.I.x or curve.NAME.knot.K
 void PatchReader::read_curve_target(TableReader& reader, const Node& at, MapSpec& map) {
   const auto parts = split_at_dots(at.text);
   const bool weight = parts.size() == 4 && parts[2] == "weight";
+  const bool knot = parts.size() == 4 && parts[2] == "knot";
   const bool point = (parts.size() == 4 || parts.size() == 5) && parts[2] == "point";
-  if (!weight && !point) {
+  if (!weight && !point && !knot) {
     return reader.fail_at(at, ErrorCode::unknown_name,
                           "'" + at.text +
-                              "' is no target: write curve.NAME.weight.2, curve.NAME.point.2 or "
-                              "curve.NAME.point.2.y");
+                              "' is no target: write curve.NAME.weight.2, curve.NAME.point.2, "
+                              "curve.NAME.point.2.y or curve.NAME.knot.4");
   }
-  map.target = weight ? MapTarget::curve_weight : MapTarget::curve_point;
+  map.target = weight ? MapTarget::curve_weight
+               : knot ? MapTarget::curve_knot
+                      : MapTarget::curve_point;
   map.target_curve = parts[1];
   if (dsp::is_builtin_wave(map.target_curve)) {
     return reader.fail_at(at, ErrorCode::unsupported,
@@ -251,6 +270,10 @@ void PatchReader::read_curve_target(TableReader& reader, const Node& at, MapSpec
   }
   const int points = curve->point_count() - (curve->is_periodic() ? curve->degree() : 0);
   map.target_point = whole_number(parts[3]);
+  if (knot) {
+    if (!check_knot_index(reader, at, *curve, map.target_point, parts[3])) return;
+    return check_control_conflict(reader, at, map);
+  }
   if (map.target_point < 0 || map.target_point >= points) {
     return reader.fail_at(at, ErrorCode::parameter_out_of_range,
                           "curve '" + curve->name() + "' has the points 0 to " +
@@ -277,6 +300,9 @@ void PatchReader::check_control_conflict(TableReader& reader, const Node& at, co
     ++controls;
     const bool same_kind = other.target == map.target;
     if (other.target_point != map.target_point) continue;
+    const bool has_knot =
+        map.target == MapTarget::curve_knot || other.target == MapTarget::curve_knot;
+    if (has_knot && !same_kind) continue;
     if (same_kind && other.target_coordinate != map.target_coordinate) continue;
     return reader.fail_at(at, ErrorCode::control_conflict,
                           "map " + std::to_string(i + 1) + " moves " +

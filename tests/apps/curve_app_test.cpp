@@ -111,8 +111,7 @@ TEST_F(CurveApp, CheckCompilesWhatItCallsOk) {
   };
   const std::string arch = "degree = 2\npoints = [0, 1, 0]\nweights = [1, 5, 1]\n";
   EXPECT_EQ(checked(arch), "");
-  EXPECT_EQ(checked("degree = 8\npoints = [0, 1, 1, 1, 1, 1, 1, 1, 0]\n"),
-            "");
+  EXPECT_EQ(checked("degree = 8\npoints = [0, 1, 1, 1, 1, 1, 1, 1, 0]\n"), "");
   EXPECT_THAT(checked("degree = 1\npoints = [0, 1, 1, 0]\nknots = [0, 0, 1e-300, 0.5, 1, 1]\n"),
               StartsWith("6:9: error: envelope 'amp': "));
   EXPECT_THAT(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Envelopes whose points and weights are moved while they sound.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -74,6 +75,61 @@ TEST(Envelope, ABlockWithControlsMayBeSplitAnywhere) {
         envelope.render(program, static_cast<std::int64_t>(first), controls, out);
       }
       for (const double y : out) ASSERT_TRUE(std::isfinite(y));
+    };
+  });
+}
+
+TEST(Envelope, AMovedKnotMovesThePeakAndJoinsStayInTheHull) {
+  EnvelopeSpec spec;
+  spec.seconds = 0.02;
+  spec.sustain_u = 0.6;
+  spec.compile.controls = {{ControlRange::Kind::knot, 4, 0, 0.02, 0.45}};
+  const NurbsCurve curve = bell();
+  const EnvelopeProgram program = program_of(curve, spec);
+  std::vector<double> knot(3000);
+  for (std::size_t i = 0; i < knot.size(); ++i)
+    knot[i] = 0.25 + 0.22 * std::sin(0.01 * static_cast<double>(i));
+  const auto play = [&](Envelope& envelope, std::size_t first, std::span<double> out) {
+    const std::size_t gates[] = {300, 421, 800, 1100, 1101, 2000};
+    for (std::size_t done = 0; done < out.size();) {
+      std::size_t next = out.size();
+      for (std::size_t k = 0; k < std::size(gates); ++k) {
+        if (gates[k] < first + done || gates[k] >= first + out.size()) continue;
+        if (gates[k] > first + done) {
+          next = std::min(next, gates[k] - first);
+        } else if (k % 3 == 2) {
+          envelope.gate_off(program, {static_cast<std::int64_t>(gates[k]), 0});
+        } else {
+          envelope.gate_on(program, {static_cast<std::int64_t>(gates[k]), 0}, kRate, 1);
+        }
+      }
+      const double* const controls[] = {&knot[first + done]};
+      envelope.render(program, static_cast<std::int64_t>(first + done), controls,
+                      out.subspan(done, next - done));
+      done = next;
+    }
+  };
+  const auto started = [&] {
+    Envelope envelope;
+    envelope.gate_on(program, {0, 0}, kRate, 1);
+    return envelope;
+  };
+  Envelope whole = started();
+  std::vector<double> y(3000);
+  play(whole, 0, y);
+  for (std::size_t i = 0; i < 300; ++i) {
+    const NurbsCurve now =
+        knotwave::curves::curve_with(curve, spec.compile.controls, {std::min(knot[i], 0.45)})
+            .value();
+    EXPECT_NEAR(y[i], value_of(now, std::min(static_cast<double>(i) / 960, 0.6)), 1e-12) << i;
+  }
+  for (std::size_t i = 1; i < y.size(); ++i) {
+    ASSERT_TRUE(y[i] >= 0 && y[i] <= 1) << i;
+    EXPECT_NEAR(y[i], y[i - 1], 0.02) << i;  // no step at any gate
+  }
+  knotwave::support::expect_block_size_does_not_matter<double>(3000, [&] {
+    return [&, envelope = started()](std::size_t first, std::span<double> out) mutable {
+      play(envelope, first, out);
     };
   });
 }

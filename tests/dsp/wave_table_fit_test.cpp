@@ -59,6 +59,21 @@ TEST(WaveTables, AControlBecomesAPosition) {
     at.weights[5] = 0.1 + 9.9 * position;
     EXPECT_LT(difference(weighted, position, of_curve(at)), 5e-6) << "weight at " << position;
   }
+  ControlRange knot;
+  knot.kind = ControlRange::Kind::knot;
+  knot.point = 5;
+  knot.low = 4.2 / 16;
+  knot.high = 5.7 / 16;
+  const WaveTables shifted = made(WaveTables::create(*curve, knot));
+  std::printf("knot between its neighbours: %d rows, fit error %.2g\n", shifted.rows(),
+              shifted.fit_error());
+  for (const double position : {0.0, 0.1, 0.5, 0.93, 1.0}) {
+    auto at = curve->spec();
+    at.knots[5] = (4.2 + 1.5 * position) / 16;
+    EXPECT_LT(difference(shifted, position, of_curve(at)), 5e-6) << "knot at " << position;
+  }
+  knot.high = 6.1 / 16;
+  EXPECT_FALSE(WaveTables::create(*curve, knot));
   point.point = 16;
   const auto wrong = WaveTables::create(*curve, point);
   ASSERT_FALSE(wrong);

@@ -86,6 +86,21 @@ constexpr Fault kFaults[] = {
      ErrorCode::value_out_of_range,
      "p.toml:21:7: error: map 1: low (1) to high (4) leaves out 0.5, which point 1 of curve "
      "'timed'"},
+    {"AKnotThatWouldReachItsNeighbour",
+     "[curves.knotty]\ndegree = 2\npoints = [0, 1, 0, 1, 0]\n[[maps]]\nfrom = 'mod'\n"
+     "to = 'curve.knotty.knot.3'\nlow = 0.1\nhigh = 0.7\n",
+     ErrorCode::value_out_of_range,
+     "p.toml:24:7: error: map 1: curve 'knotty': control 0 (knot 3): its range 0.1..0.7 does not"},
+    {"AKnotThatWouldReachAMovedNeighbour",
+     "[curves.knotty]\ndegree = 2\npoints = [0, 1, 0, 1, 0]\n[[maps]]\nfrom = 'mod'\n"
+     "to = 'curve.knotty.knot.3'\nlow = 0.1\nhigh = 0.6\n[[maps]]\nfrom = 'mod'\n"
+     "to = 'curve.knotty.knot.4'\nlow = 0.5\nhigh = 0.8\n",
+     ErrorCode::value_out_of_range,
+     "p.toml:29:7: error: map 2: curve 'knotty': control 0 (knot 4): its range 0.5..0.8 does not"},
+    {"AKnotOfAShaper",
+     "[curves.knotty]\ndegree = 2\npoints = [0, 1, 0, 1, 0]\n[shaper]\ncurve = 'knotty'\n"
+     "[[maps]]\nfrom = 'mod'\nto = 'curve.knotty.knot.3'\nlow = 0.1\nhigh = 0.5\n",
+     ErrorCode::unsupported, "p.toml:22:9: error: shaper: curve 'knotty': knot 3 of it moves; a"},
     {"TwoNumbersOfAWaveform",
      "[[maps]]\nfrom = 'mod'\nto = 'curve.ring.weight.1'\nlow = 1\nhigh = 9\n"
      "[[maps]]\nfrom = 'mod'\nto = 'curve.ring.point.2'\nlow = 0\nhigh = 1\n",

@@ -195,7 +195,7 @@ TEST_F(PatchDocument, EveryDocumentedKeyIsAcceptedWithItsExample) {
 TEST_F(PatchDocument, EveryDocumentedSourceAndTargetIsAccepted) {
   auto sections = documented();
   ASSERT_GE(sections["Sources"].size(), 17u);
-  ASSERT_GE(sections["Targets"].size(), 22u);
+  ASSERT_GE(sections["Targets"].size(), 23u);
   for (const Row& row : sections["Sources"]) {
     std::istringstream words(row.key);  // "cc0 … cc119" are two
     for (std::string word; words >> word;) {
@@ -211,7 +211,8 @@ TEST_F(PatchDocument, EveryDocumentedSourceAndTargetIsAccepted) {
   }
   for (const Row& row : sections["Targets"]) {
     const bool curve = row.key.starts_with("curve.");
-    std::string word = std::regex_replace(row.key, std::regex("\\.I$"), ".0");
+    std::string word = std::regex_replace(row.key, std::regex("\\.[IK]$"),
+                                          curve && row.key.ends_with("K") ? ".2" : ".0");
     const char* name = curve                              ? "ring"
                        : row.key.starts_with("lfo.")      ? "wow"
                        : row.key.starts_with("envelope.") ? "amp"
@@ -219,9 +220,10 @@ TEST_F(PatchDocument, EveryDocumentedSourceAndTargetIsAccepted) {
     word = std::regex_replace(word, std::regex("NAME"), name);
     Document document = patch();
     document.set("[[maps]]", "to", "'" + word + "'");
+    if (row.key.ends_with("K")) document.set("[curves.ring]", "points", "[0, 0.5, 1]");
     if (curve) {
-      document.set("[[maps]]", "low", "0.5");
-      document.set("[[maps]]", "high", "2");
+      document.set("[[maps]]", "low", row.key.ends_with("K") ? "0.25" : "0.5");
+      document.set("[[maps]]", "high", row.key.ends_with("K") ? "0.75" : "2");
     }
     expect_accepted(document, word);
   }

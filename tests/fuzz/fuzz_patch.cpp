@@ -34,6 +34,12 @@ void check_maps(const engine::PatchSpec& patch) {
     if (map.source == engine::MapSource::lfo) {
       FUZZ_CHECK(map.source_index < static_cast<int>(patch.lfos.size()));
     }
+    if (map.target == engine::MapTarget::curve_knot) {
+      const auto* curve = patch.curves.find_curve(map.target_curve);
+      FUZZ_CHECK(curve != nullptr &&
+                 map.target_point < static_cast<int>(curve->spec().knots.size()));
+      FUZZ_CHECK(map.low < map.high);
+    }
     if (map.target == engine::MapTarget::curve_weight ||
         map.target == engine::MapTarget::curve_point) {
       const auto* curve = patch.curves.find_curve(map.target_curve);

@@ -10,11 +10,11 @@ namespace knotwave::curves {
 
 /// Something a controller may move while the curve plays, with its range.
 struct ControlRange {
-  enum class Kind { weight, coordinate };
+  enum class Kind { weight, coordinate, knot };
   Kind kind = Kind::weight;
-  int point = 0;       ///< index as in the file, from 0
+  int point = 0;       ///< index as in the file, from 0; Kind::knot: of the knot
   int coordinate = 0;  ///< for Kind::coordinate
-  double low = 0;      ///< absolute values: the weight or the coordinate itself
+  double low = 0;      ///< absolute values: the weight, coordinate or knot itself
   double high = 1;
 };
 
@@ -23,6 +23,15 @@ struct CompileOptions {
   int max_pieces = 4096;    ///< more is an error (error_bound_missed), never a silent coarsening
   std::vector<ControlRange> controls;
 };
+
+/// Checks each control against the curve, the limits of curve files and the other controls. A knot
+/// has to be a simple inner one, and its range to stay 1e-9 of the domain away from both
+/// neighbours, wherever these are moved to. Errors: value_out_of_range, control_conflict.
+Result<void> check_controls(const NurbsCurve& curve, const std::vector<ControlRange>& controls);
+
+/// The curve with control k at values[k].
+Result<NurbsCurve> curve_with(const NurbsCurve& curve, const std::vector<ControlRange>& controls,
+                              const std::vector<double>& values);
 
 /// A curve as a function. dim 1: u is the parameter, degree <= 7 stays exact, above that pieces of
 /// degree 7 are fitted and checked; they meet in value and, to rounding, in slope. dim 2: x is the

@@ -4,6 +4,7 @@
 // allocates, so it is [control].
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,8 @@ namespace knotwave::curves {
 
 inline constexpr int kMaxPieceDegree = 7;
 inline constexpr int kMaxControls = 8;
+
+class LiveSpline;  // src/live_spline.h
 
 /// The piece last used. Only a hint: any value gives the same samples. One per voice and program.
 struct CurveCursor {
@@ -45,6 +48,9 @@ class CurveProgram {
   double control_rest(int k) const KNOTWAVE_RT { return control_rest_[std::size_t(k)]; }
   double control_low(int k) const KNOTWAVE_RT { return control_low_[std::size_t(k)]; }
   double control_high(int k) const KNOTWAVE_RT { return control_high_[std::size_t(k)]; }
+  /// A control is a knot. With controls given, values and slopes then come from the points and
+  /// knots by de Boor's algorithm, sample by sample; breaks() and coefficients() are those at rest.
+  bool moves_knots() const KNOTWAVE_RT { return live_ != nullptr; }
   /// The range the output never leaves: the hull of the control points over all controls.
   double low(int coordinate = 0) const KNOTWAVE_RT { return low_[std::size_t(coordinate)]; }
   double high(int coordinate = 0) const KNOTWAVE_RT { return high_[std::size_t(coordinate)]; }
@@ -104,6 +110,7 @@ class CurveProgram {
   std::vector<double> start_values_, end_values_;
   std::vector<double> low_, high_;
   std::vector<double> control_rest_, control_low_, control_high_;
+  std::shared_ptr<const LiveSpline> live_;  // only where knots move
 };
 
 /// Which vector unit grids are rendered with. All give the same bits; tests and benchmarks choose.

@@ -118,7 +118,8 @@ class Envelope {
   void render_chunk(const EnvelopeProgram& program, std::int64_t first,
                     std::span<const double* const> controls, std::size_t offset,
                     std::span<double> out) KNOTWAVE_RT;
-  void add_join(std::int64_t first, std::span<double> out) KNOTWAVE_RT;
+  void add_join(const EnvelopeProgram& program, std::int64_t first,
+                std::span<double> out) KNOTWAVE_RT;
   std::span<const double> last_controls(const EnvelopeProgram& program) const KNOTWAVE_RT;
 
   Stage stage_ = Stage::idle;

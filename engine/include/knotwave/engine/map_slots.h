@@ -30,7 +30,7 @@ inline constexpr int kSlotFree = kSlotEnvelopeTime + kMaxVoiceEnvelopes;
 inline constexpr int kSlotControl = kSlotFree + kMaxFreeNumbers;
 inline constexpr int kSlotCount = kSlotControl + kMaxMaps;
 
-/// Where a target's value goes. `index` as MapSpec::target_index; for curve_weight and curve_point
+/// Where a target's value goes. `index` as MapSpec::target_index; for curve targets
 /// the number of the moved number. [any]
 constexpr int slot_of(MapTarget target, int index) KNOTWAVE_RT {
   switch (target) {
@@ -64,6 +64,7 @@ constexpr int slot_of(MapTarget target, int index) KNOTWAVE_RT {
       return kSlotFree + index;
     case MapTarget::curve_weight:
     case MapTarget::curve_point:
+    case MapTarget::curve_knot:
       return kSlotControl + index;
   }
   return kSlotAmp;

@@ -102,6 +102,7 @@ enum class MapTarget {
   envelope_time,  ///< octaves; read at note-on
   curve_weight,   ///< a weight of a curve: the value itself replaces it between low and high
   curve_point,    ///< a coordinate of a control point, likewise
+  curve_knot,     ///< a knot, likewise
   free_number,    ///< a number of the patch's own, which maps may read
 };
 
@@ -118,12 +119,12 @@ struct MapSpec {
   MapTarget target = MapTarget::amp;
   int target_index = -1;     ///< oscillator (kMaxOscillators = noise), envelope, lfo,
                              ///< free number; -1 = voice
-  std::string target_curve;  ///< curve_weight, curve_point
-  int target_point = 0;
+  std::string target_curve;  ///< curve_weight, curve_point, curve_knot
+  int target_point = 0;      ///< of a knot its index
   int target_coordinate = 0;
   double depth = 1;
   double low = 0,
-         high = 1;  ///< curve_weight, curve_point: the declared range; source 0..1 covers it
+         high = 1;          ///< curve targets: the declared range; source 0..1 covers it
   double smooth_s = 0.005;  ///< controllers glide to a new value in this time
   bool enabled = true;
 };

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# installed_test.sh BUILD_DIR SOURCE_DIR CXX: installs into a fresh prefix, then builds and runs a program
+# installed_test.sh BUILD_DIR SOURCE_DIR CXX [TARGET]: installs into a fresh prefix, then builds and runs a program
 # outside the tree twice: with find_package and with pkg-config.
 set -euo pipefail
-build=$1 source=$2 cxx=$3
+build=$1 source=$2 cxx=$3 more=${4:-}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cmake --build "$build" --target programs knotwave_engine knotwave_io knotwave_curves_c >"$work/build.log" || { tail -n 30 "$work/build.log"; exit 1; }
+# shellcheck disable=SC2086
+cmake --build "$build" --target programs knotwave_engine knotwave_io knotwave_curves_c $more >"$work/build.log" || { tail -n 30 "$work/build.log"; exit 1; }
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
 expected="0.50 0.25 261.626 Hz, empty.mid"
 

@@ -27,7 +27,7 @@ modules="libhwy tomlplusplus CLI11 sndfile portaudio-2.0 rtmidi libebur128 gtest
 tools="clang++-14 clang-format-14 clang-tidy-14 python3 midicsv objdump git"
 expect build "c++ cmake ninja ccache pkg-config $modules"
 expect demo "c++ cmake ninja ccache pkg-config $modules"
-expect test "c++ cmake ninja ccache pkg-config $modules $tools"
+expect test "c++ cmake ninja ccache pkg-config $modules $tools pybind11"
 
 for tool in cmake ninja ccache; do have "$tool" "exit 0"; done
 have c++ "exit 1"         # finds no header
@@ -41,6 +41,6 @@ expect build "CLI11 gtest"
 
 have pkg-config "exit 0"
 for tool in clang++-14 clang-tidy-14 midicsv objdump git; do have "$tool" "exit 0"; done
-have python3 "exit 1"  # without mpmath
-expect test "clang-format-14 python3-mpmath"
+have python3 "exit 1"  # without any module
+expect test "clang-format-14 python3-mpmath python3-numpy python3-pytest"
 exit $failed

@@ -3,12 +3,21 @@
 
 #include <span>
 
+#include <fcntl.h>
+
 #include "knotwave/base/file.h"
 
 #include "command_line/exit_codes.h"
 #include "command_line/messages.h"
 
 namespace knotwave::command_line {
+
+void guard_standard_streams() {
+  for (const int stream : {0, 1, 2}) {
+    // open() takes the lowest number that is free, and those below are not.
+    if (::fcntl(stream, F_GETFD) == -1) ::open("/dev/null", O_RDONLY);
+  }
+}
 
 int print(std::string_view program, std::string_view text) {
   const auto written = base::write_to_standard_output(std::as_bytes(std::span(text)));

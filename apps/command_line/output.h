@@ -5,6 +5,10 @@
 
 namespace knotwave::command_line {
 
+/// Gives closed standard streams a place that cannot be written to. Before anything is opened: the
+/// next file would take such a place, and what is printed would go into it.
+void guard_standard_streams();
+
 /// `text` on standard output. Where that fails (a full disk, a reader that has gone) the reason is
 /// told on standard error. Returns the exit code.
 int print(std::string_view program, std::string_view text);

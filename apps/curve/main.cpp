@@ -42,6 +42,7 @@ int run(const CurveOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  guard_standard_streams();
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a failed write
   try {
     const CommandLine line = read_command_line(argc, argv);

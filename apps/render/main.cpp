@@ -118,6 +118,7 @@ int run(const RenderOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  guard_standard_streams();
   set_signals();
   try {
     const CommandLine line = read_command_line(argc, argv);

@@ -122,6 +122,26 @@ TEST_F(RenderFaults, WhatCannotBePrintedIsToldByEveryProgram) {
   EXPECT_THAT(read("c.json"), HasSubstr("\"path\": \"c.wav\"")) << "the file has its place";
 }
 
+TEST_F(RenderFaults, NothingIsPrintedIntoTheFilesOfClosedStreams) {
+  const std::string program = KNOTWAVE_BIN_DIR "/knotwave-render small.toml small.mid ";
+  support::ProgramOptions options;
+  options.folder = folder_.path();
+  const auto shell = [&](const std::string& words) {
+    return support::run_program({"/bin/sh", "-c", program + words}, options);
+  };
+  ASSERT_EQ(shell("-o good.wav --json good.json --quiet").exit_code, 0);
+  for (const char* closed : {">&-", "2>&-", "<&-", "<&- >&- 2>&-"}) {
+    const bool prints =
+        std::string(closed).find(">&-") == std::string::npos || std::string(closed) == "2>&-";
+    const auto done = shell("-o out.wav --json out.json " + std::string(closed));
+    EXPECT_EQ(done.exit_code, prints ? 0 : 1) << closed;
+    EXPECT_EQ(read("out.wav"), read("good.wav")) << closed;
+    EXPECT_THAT(read("out.json"), testing::StartsWith("{")) << closed;
+  }
+  EXPECT_EQ(shell("-o - --json samples.json >&-").exit_code, 1);
+  EXPECT_FALSE(fs::exists(file("samples.json")) && read("samples.json").substr(0, 1) != "{");
+}
+
 #ifndef KNOTWAVE_SANITIZED  // a sanitizer needs terabytes of addresses
 TEST_F(RenderFaults, ThreadsThatCannotBeStartedAreToldAndNothingIsLeft) {
   support::ProgramOptions options;

@@ -56,7 +56,8 @@ void check_songs(const std::vector<std::string>& songs) {
     ASSERT_EQ(m.exit_code, 0) << song << "\n" << m.err;
     EXPECT_TRUE(m.finite) << song;
     EXPECT_LT(m.peak, 1.0) << song;
-    EXPECT_EQ(m.end_peak, 0) << song << " does not end in exact silence";
+    // A voice may come to rest within the last millisecond, so a curve's last steps may lie there.
+    EXPECT_LT(m.end_peak, 1e-5) << song << " does not end below -100 dBFS";
     seconds += m.seconds();
     cpu_s += m.cpu_s;
     highest = std::max(highest, m.peak);

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
-// knotwave-curve: checks, describes, evaluates and draws curves. Messages and exit codes.
+// knotwave-curve: checks, describes, evaluates, draws, edits and fits curves. Messages and exit
+// codes.
 #include <csignal>
 #include <cstdio>
 #include <new>
 
+#include "knotwave/base/file.h"
+
 #include "command_line/exit_codes.h"
 #include "command_line/messages.h"
 #include "command_line/output.h"
+#include "curve_output.h"
 #include "options.h"
 #include "verbs.h"
 
@@ -22,6 +26,43 @@ int print(const std::string& text) { return command_line::print("knotwave-curve"
 
 int print(const Result<std::string>& text) { return text ? print(*text) : say(text.error()); }
 
+/// To the file, and the report to standard output; without a file to standard output, and the
+/// report to standard error.
+int deliver(const CurveOptions& options, const Result<Made>& made) {
+  if (!made) return say(made.error());
+  if (options.output.empty() || options.output == "-") {
+    std::fputs(made->report.c_str(), stderr);
+    return print(made->text);
+  }
+  const auto written = base::write_file(options.output, made->text);
+  return written ? print(options.output + ": written\n" + made->report) : say(written.error());
+}
+
+Result<Made> make(const CurveOptions& options) {
+  const std::string overlap = output_overlap(options);
+  if (!overlap.empty()) return fail(ErrorCode::usage, overlap);
+  switch (options.verb) {
+    case Verb::split:
+      return split_in_two(options);
+    case Verb::insert_knot:
+      return with_knots(options);
+    case Verb::elevate:
+      return elevated(options);
+    case Verb::simplify:
+      return simplified(options);
+    case Verb::morph:
+      return morphed(options);
+    case Verb::iso:
+      return iso_curves(options);
+    case Verb::fit:
+      return fitted(options);
+    case Verb::import_svg:
+      return imported(options);
+    default:
+      return exported(options);
+  }
+}
+
 int run(const CurveOptions& options) {
   switch (options.verb) {
     case Verb::check: {
@@ -35,8 +76,9 @@ int run(const CurveOptions& options) {
       return print(eval_text(options));
     case Verb::plot:
       return print(plot_text_or_file(options));
+    default:
+      return deliver(options, make(options));
   }
-  return kExitUsage;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The only file of knotwave-curve that knows CLI11.
+// With edit_options.cpp all of knotwave-curve that knows CLI11.
 #include "options.h"
 
 #include <algorithm>
@@ -12,12 +12,13 @@
 #include "knotwave/base/file.h"
 
 #include "command_line/options.h"
+#include "edit_options.h"
 
 namespace knotwave::curve_app {
 namespace {
 
 constexpr const char* kAbout =
-    "Checks, describes, evaluates and draws Knotwave curves and surfaces.\n"
+    "Checks, describes, evaluates, draws, edits and fits Knotwave curves and surfaces.\n"
     "FILE is a curve file, or a patch that holds curves; FILE#NAME is one of them.";
 
 constexpr const char* kMore =
@@ -38,7 +39,10 @@ constexpr const char* kPlotExample =
     "  knotwave-curve plot examples/curves/decay.toml#decay60 -o decay60.svg\n"
     "  knotwave-curve plot examples/curves/decay.toml#decay60";
 
-constexpr auto kVerbs = std::to_array<std::string_view>({"check", "info", "eval", "plot"});
+/// In the order of Verb.
+constexpr auto kVerbs = std::to_array<std::string_view>(
+    {"check", "info", "eval", "plot", "split", "insert-knot", "elevate", "simplify", "morph", "iso",
+     "fit", "import", "export"});
 
 using command_line::number_in;
 
@@ -131,7 +135,11 @@ void add_plot(CLI::App& app, CurveOptions& o) {
 
 /// What is wrong with options that are each good in themselves; empty when nothing is.
 std::string conflict(const CurveOptions& o) {
-  if (o.files.empty()) return "which curve? a FILE is needed, or FILE#NAME";
+  if (o.files.empty()) {
+    const bool is_other = o.verb == Verb::fit || o.verb == Verb::import_svg;
+    return is_other ? "which file? a FILE is needed"
+                    : "which curve? a FILE is needed, or FILE#NAME";
+  }
   if (o.verb == Verb::eval && o.at.empty() == (o.grid == 0)) {
     return o.at.empty() ? "where? --at LIST or --grid STEPS" : "--at and --grid exclude each other";
   }
@@ -139,7 +147,18 @@ std::string conflict(const CurveOptions& o) {
   if (o.verb == Verb::plot && !o.output.empty() && !ends(".svg") && !ends(".png")) {
     return "--output: '" + o.output + "' ends neither in .svg nor in .png";
   }
-  return {};
+  return o.verb < Verb::split ? "" : edit_conflict(o);
+}
+
+std::string all_verbs() {
+  std::string text = "what to do?";
+  for (const auto verb : kVerbs) {
+    text += (verb == kVerbs.front()  ? " "
+             : verb == kVerbs.back() ? " or "
+                                     : ", ") +
+            std::string(verb);
+  }
+  return text;
 }
 
 }  // namespace
@@ -154,9 +173,10 @@ CommandLine read_command_line(int argc, char** argv) {
   add_info(app, options);
   add_eval(app, options);
   add_plot(app, options);
+  add_edits(app, options);
   line.exit_code = command_line::read_words(app, argc, argv, [&]() -> std::string {
     const auto verbs = app.get_subcommands();
-    if (verbs.empty()) return "what to do? check, info, eval or plot";
+    if (verbs.empty()) return all_verbs();
     const auto verb = std::find(kVerbs.begin(), kVerbs.end(), verbs.front()->get_name());
     options.verb = static_cast<Verb>(verb - kVerbs.begin());
     return conflict(options);

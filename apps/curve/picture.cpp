@@ -1,35 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <span>
-#include <vector>
-
 #include "knotwave/base/file.h"
 #include "knotwave/curves/plot.h"
-#include "knotwave/engine/bank.h"
 
-#include "command_line/places.h"
 #include "curve_input.h"
+#include "curve_output.h"
 #include "verbs.h"
 
 namespace knotwave::curve_app {
-namespace {
-
-/// What is wrong with drawing over a file that is read; empty when nothing is.
-std::string output_overlap(const CurveOptions& options) {
-  const std::string path = reference_of(options.files.front()).path;
-  std::vector<command_line::NamedFile> inputs = {{"the file of the curve", path}};
-  const auto file = read_known_file(path);
-  if (file && file->kind == curves::FileKind::patch) {
-    const auto bank = engine::read_bank(path);
-    if (bank) {
-      for (const auto& name : bank->files) inputs.push_back({"a file the patch names,", name});
-    }
-  }
-  const command_line::NamedFile output{"--output", options.output};
-  return command_line::overlap(inputs, std::span(&output, 1));
-}
-
-}  // namespace
-
 Result<std::string> plot_text_or_file(const CurveOptions& options) {
   const auto item = read_item(options.files.front());
   if (!item) return item.error();

@@ -4,8 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "knotwave/base/document.h"
+#include "knotwave/curves/analysis.h"
 #include "knotwave/curves/bezier.h"
 #include "knotwave/curves/svg_path.h"
 
@@ -331,6 +333,19 @@ Result<std::vector<NurbsCurve>> PathReader::read() {
 
 Result<std::vector<NurbsCurve>> curves_from_svg_path(std::string_view d, SvgY y) {
   return PathReader(d, y).read();
+}
+
+Result<NurbsCurve> in_unit_square(const NurbsCurve& curve) {
+  CurveSpec spec = curve.spec();
+  const auto dim = static_cast<std::size_t>(spec.dim);
+  for (std::size_t c = 0; c < dim; ++c) {
+    const ValueRange range = value_range(curve, static_cast<int>(c));
+    const double low = range.low.value, width = range.high.value - low;
+    for (std::size_t i = c; i < spec.points.size(); i += dim) {
+      spec.points[i] = width > 0 ? (spec.points[i] - low) / width : 0;
+    }
+  }
+  return NurbsCurve::create(std::move(spec));
 }
 
 }  // namespace knotwave::curves

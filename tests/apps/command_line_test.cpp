@@ -141,12 +141,18 @@ TEST(CurveCommandLine, AWrongCommandIsNamedWithTheNearest) {
   expect_usage_errors(
       "knotwave-curve",
       {
-          {{}, "what to do? check, info, eval or plot"},
+          {{},
+           "what to do? check, info, eval, plot, split, insert-knot, elevate, simplify, morph, "
+           "iso, "
+           "fit, import or export"},
           {{"chek", "a.toml"}, "unknown command 'chek'; did you mean 'check'?"},
           {{"PLOT", "a.toml"}, "unknown command 'PLOT'; did you mean 'plot'?"},
           {{"help"}, "unknown command 'help'; did you mean '--help'?"},
-          {{"a.toml"}, "unknown command 'a.toml'; the commands are check, info, eval and plot"},
-          {{"split"}, "unknown command 'split'; the commands are check, info, eval and plot"},
+          {{"a.toml"},
+           "unknown command 'a.toml'; the commands are check, info, eval, plot, split, "
+           "insert-knot, elevate, simplify, morph, iso, fit, import and export"},
+          {{"split"}, "which curve? a FILE is needed, or FILE#NAME"},
+          {{"fit"}, "which file? a FILE is needed"},
           {{"info"}, "which curve? a FILE is needed, or FILE#NAME"},
           {{"info", "a.toml", "b.toml"}, "'b.toml' is one word too many: FILE is given already"},
       });

@@ -185,6 +185,23 @@ TEST(SvgPath, NamesThePlaceOfAFault) {
             ErrorCode::coordinate_out_of_range);
 }
 
+TEST(SvgPath, StretchesADrawnLineOntoTheUnitSquare) {
+  const auto line = in_unit_square(read("M 10,50 C 10,10 20,0 50,0", SvgY::up)[0]);
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->points()[0], 0);
+  EXPECT_EQ(line->points()[1], 0);
+  EXPECT_EQ(line->points()[6], 1);
+  EXPECT_EQ(line->points()[7], 1);
+  const auto level = in_unit_square(read("M 3,4 H 5", SvgY::up)[0]);
+  EXPECT_EQ(level->points()[1], 0);
+  EXPECT_EQ(level->points()[3], 0);
+  const auto circle = in_unit_square(*curves::ellipse(3, 200));
+  for (int i = 0; i <= 1000; ++i) {
+    const auto xy = at(*circle, i / 1000.0);
+    EXPECT_NEAR(std::hypot(xy[0] - 0.5, xy[1] - 0.5), 0.5, 4 * 0x1p-53);
+  }
+}
+
 TEST(SvgPath, WritesCubicsThatReadBackToTheBit) {
   const char* const d = "M 0,0 C 0.1,-0.7 0.3,1e-9 1,2 C 3,4 0.1,0.2 -7,0.30000000000000004";
   const auto path = svg_path_from_curve(read(d).at(0), 1e-12, SvgY::down);

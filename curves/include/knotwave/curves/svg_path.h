@@ -24,6 +24,12 @@ enum class SvgY { up, down };
 /// coordinate_out_of_range, too_many_points.
 Result<std::vector<NurbsCurve>> curves_from_svg_path(std::string_view d, SvgY y = SvgY::up);
 
+/// Moved and stretched so that each coordinate runs from 0 (its least value) to 1 (its greatest):
+/// a drawing as an envelope, an easing, a crossfade law. A coordinate that stays the same becomes
+/// 0. Within 4 ulp of max|P| over the range. Errors: coordinate_out_of_range (a range so small that
+/// control points outside it would pass kMaxCoordinate).
+Result<NurbsCurve> in_unit_square(const NurbsCurve& curve);
+
 /// Path data, and a bound of how far it is from the curve.
 struct SvgPath {
   std::string d;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Commands whose result is another curve, and which say how far it is from the old one: simplify,
 // morph.
-#include <cmath>
+#include <algorithm>
 
 #include "knotwave/curves/combine.h"
 #include "knotwave/curves/reduce.h"
@@ -12,7 +12,6 @@
 namespace knotwave::curve_app {
 namespace {
 
-using curves::CurveSet;
 using curves::NurbsCurve;
 
 Result<NurbsCurve> read_one_curve(const std::string& word, const std::string& command) {

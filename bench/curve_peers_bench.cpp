@@ -201,7 +201,11 @@ int main(int argc, char** argv) {
   using namespace knotwave::curves;
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  set_simd_level(SimdLevel::narrow);
+  // The others are built for AVX2.
+  if (const auto set = set_simd_level(SimdLevel::avx2); !set) {
+    std::fprintf(stderr, "curve_peers_bench: %s\n", set.error().message.c_str());
+    return 1;
+  }
   register_limits();
   register_ours();
   static const std::vector<peers::NamedPeer> all = peers::linked_peers();

@@ -3,6 +3,14 @@
 find_package(Threads REQUIRED)
 if("curves" IN_LIST KNOTWAVE_BUILT_MODULES)
   find_package(hwy REQUIRED)
+  # The vector units that no kernel is compiled for, the same for all, so that a SimdLevel means one
+  # unit everywhere. SSSE3: processors of that age take the baseline. AVX3_DL: our kernels use none of
+  # what it adds to AVX3. SVE and RVV: kernels keep vectors in structs, which needs their size; ARM
+  # takes NEON.
+  add_library(knotwave_vector_units INTERFACE)
+  set(left_out HWY_SSSE3 HWY_AVX3_DL HWY_SVE HWY_SVE2 HWY_SVE_256 HWY_SVE2_128 HWY_RVV)
+  list(JOIN left_out "|" left_out)
+  target_compile_definitions(knotwave_vector_units INTERFACE "HWY_DISABLED_TARGETS=(${left_out})")
 endif()
 find_package(tomlplusplus REQUIRED)
 if(KNOTWAVE_BUILD_APPS)

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "knotwave/base/file.h"
-#include "knotwave/curves/curve_program.h"
+#include "knotwave/curves/simd.h"
 
 #include "command_line/exit_codes.h"
 #include "command_line/messages.h"
@@ -101,7 +101,9 @@ int check(const RenderOptions& options, const RenderInput& input) {
 }
 
 int run(const RenderOptions& options) {
-  if (options.baseline_simd) curves::set_simd_level(curves::SimdLevel::baseline);
+  if (const auto set = curves::set_simd_level(options.simd); !set) {
+    return say(fail(set.error().code, "--simd: " + set.error().message));
+  }
   const auto input = read_input(options);
   if (!input) return say(input.error());
   const std::string overlap = output_overlap(options, *input);

@@ -37,6 +37,10 @@ constexpr const char* kSampleFormats[] = {"16", "24", "32f"};
 constexpr io::SampleFormat kFormatOf[] = {io::SampleFormat::pcm16, io::SampleFormat::pcm24,
                                           io::SampleFormat::float32};
 
+constexpr const char* kSimdNames[] = {"best", "avx2", "baseline"};
+constexpr curves::SimdLevel kSimdOf[] = {curves::SimdLevel::best, curves::SimdLevel::avx2,
+                                         curves::SimdLevel::baseline};
+
 std::string demo_names() {
   std::string names;
   for (const auto& name : names_of_demos()) names += (names.empty() ? "" : ", ") + name;
@@ -99,12 +103,13 @@ void add_speed(CLI::App& app, RenderOptions& o) {
   add_number(app, {"--block", "samples rendered at once; changes no sample", ""}, o.block_frames, 1,
              65536);
   add_number(app, {"--threads", "threads to render with; changes no sample", ""}, o.threads, 1, 64);
-  add_choice(app,
-             {"--simd",
-              "processor instructions: the best there are, or what every one of its kind has; "
-              "changes no sample (best if not given)",
-              ""},
-             {"best", "baseline"}, [&o](std::size_t i) { o.baseline_simd = i == 1; });
+  add_choice(
+      app,
+      {"--simd",
+       "vector unit of the processor: the best it has, AVX2 and no wider, or what all of its "
+       "kind have; changes no sample (best if not given)",
+       ""},
+      {std::begin(kSimdNames), std::end(kSimdNames)}, [&o](std::size_t i) { o.simd = kSimdOf[i]; });
 }
 
 bool is_midi_name(std::string_view name) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "knotwave/curves/simd.h"
 #include "knotwave/io/sound_file.h"
 
 namespace knotwave::render {
@@ -25,7 +26,7 @@ struct RenderOptions {
   std::string json;              ///< "-" is standard output
   std::string stems;             ///< a folder
   bool quiet = false;
-  bool baseline_simd = false;
+  curves::SimdLevel simd = curves::SimdLevel::best;
 };
 
 /// A command line read: options, or an exit code when there is nothing (more) to do.

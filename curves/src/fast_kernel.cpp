@@ -4,13 +4,10 @@
 #include "fast_kernel.h"
 
 #include <algorithm>
-#include <atomic>
 #include <utility>
 
-// SSSE3 machines take the baseline, AVX-512's later instructions are none of these, and vectors
-// whose size is not known cannot be members.
-#define HWY_DISABLED_TARGETS \
-  (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "knotwave/curves/simd_kernels.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "fast_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -133,7 +130,8 @@ void run_fast(const FastTask& task, std::int64_t anchor, std::int64_t first,
 
 template <int... Degrees>
 constexpr FastKernels make_fast_kernels(std::integer_sequence<int, Degrees...>) {
-  return {{{{run_fast<Degrees, false, false>, run_fast<Degrees, false, true>},
+  return {HWY_TARGET,
+          {{{run_fast<Degrees, false, false>, run_fast<Degrees, false, true>},
             {run_fast<Degrees, true, false>, run_fast<Degrees, true, true>}}...}};
 }
 
@@ -151,26 +149,14 @@ HWY_AFTER_NAMESPACE();
 namespace knotwave::curves {
 namespace {
 HWY_EXPORT(fast_kernels_here);
-
-// Null only while other static objects are being made: the baseline serves until then.
-std::atomic<const FastKernels*> kernels_in_use = HWY_DYNAMIC_DISPATCH(fast_kernels_here)();
-
-const FastKernels* kernels_of(SimdLevel level) {
-  if (level == SimdLevel::baseline) return HWY_STATIC_DISPATCH(fast_kernels_here)();
-#if HWY_TARGETS & HWY_AVX2
-  const bool has_avx2 = (hwy::SupportedTargets() & HWY_AVX2) != 0;
-  if (level == SimdLevel::narrow && has_avx2) return N_AVX2::fast_kernels_here();
-#endif
-  return HWY_DYNAMIC_DISPATCH(fast_kernels_here)();
-}
+const SimdKernels<FastKernels> kernels_of("grid in float", HWY_DYNAMIC_DISPATCH(fast_kernels_here),
+                                          HWY_CHOOSE_AVX2(fast_kernels_here),
+                                          HWY_STATIC_DISPATCH(fast_kernels_here));
 }  // namespace
 
 const FastKernels& fast_kernels() KNOTWAVE_RT {
-  const FastKernels* const kernels = kernels_in_use.load(std::memory_order_relaxed);
-  return kernels != nullptr ? *kernels : *HWY_STATIC_DISPATCH(fast_kernels_here)();
+  return kernels_of.in_use(*HWY_STATIC_DISPATCH(fast_kernels_here)());
 }
-
-void select_fast_kernels(SimdLevel level) { kernels_in_use = kernels_of(level); }
 
 }  // namespace knotwave::curves
 #endif  // HWY_ONCE

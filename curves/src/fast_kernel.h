@@ -61,6 +61,7 @@ inline float fast_sample(const FastTask& task, int degree, bool clamp, float s) 
 }
 
 struct FastKernels {
+  std::int64_t unit;  ///< the vector unit compiled for, as HWY_TARGET
   /// out[i] = node first + i, all in the task's piece; `anchor` is that of `first`.
   using Run = void (*)(const FastTask&, std::int64_t anchor, std::int64_t first, float* out,
                        std::size_t n);
@@ -69,7 +70,5 @@ struct FastKernels {
 
 /// The kernels in use. [any]
 const FastKernels& fast_kernels() KNOTWAVE_RT;
-/// What set_simd_level() asks of this file.
-void select_fast_kernels(SimdLevel level);
 
 }  // namespace knotwave::curves

@@ -3,14 +3,9 @@
 // Only Mul, Add, Sub, Div and selections: never MulAdd, whose rounding differs between targets.
 #include "grid_kernel.h"
 
-#include <atomic>
-
 #include "knotwave/curves/curve_program.h"
+#include "knotwave/curves/simd_kernels.h"
 
-#include "fast_kernel.h"
-
-// SSSE3 machines take the baseline.
-#define HWY_DISABLED_TARGETS HWY_SSSE3
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "grid_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -239,11 +234,10 @@ void array_controls(const PieceTask& task, const ControlTask& controls, const do
 }
 
 const GridKernels* kernels() {
-  static constexpr GridKernels kKernels = {grid_float, grid_double, array, array_controls};
+  static constexpr GridKernels kKernels = {HWY_TARGET, grid_float, grid_double, array,
+                                           array_controls};
   return &kKernels;
 }
-
-const char* target_name() { return hwy::TargetName(HWY_TARGET); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace knotwave::curves
@@ -253,36 +247,13 @@ HWY_AFTER_NAMESPACE();
 namespace knotwave::curves {
 namespace {
 HWY_EXPORT(kernels);
-HWY_EXPORT(target_name);
-
-// Null only while other static objects are being made: the baseline serves until then.
-std::atomic<const GridKernels*> kernels_in_use = HWY_DYNAMIC_DISPATCH(kernels)();
-std::atomic<SimdLevel> level_in_use = SimdLevel::best;
-std::atomic<const char*> name_in_use = HWY_DYNAMIC_DISPATCH(target_name)();
+const SimdKernels<GridKernels> kernels_of("grid in double", HWY_DYNAMIC_DISPATCH(kernels),
+                                          HWY_CHOOSE_AVX2(kernels), HWY_STATIC_DISPATCH(kernels));
 }  // namespace
 
 const GridKernels& grid_kernels() KNOTWAVE_RT {
-  const GridKernels* const kernels = kernels_in_use.load(std::memory_order_relaxed);
-  return kernels != nullptr ? *kernels : *HWY_STATIC_DISPATCH(kernels)();
+  return kernels_of.in_use(*HWY_STATIC_DISPATCH(kernels)());
 }
-
-void set_simd_level(SimdLevel level) {
-  const bool baseline = level == SimdLevel::baseline;
-  level_in_use = level;
-  select_fast_kernels(level);
-  kernels_in_use = baseline ? HWY_STATIC_DISPATCH(kernels)() : HWY_DYNAMIC_DISPATCH(kernels)();
-  name_in_use = baseline ? HWY_STATIC_DISPATCH(target_name)() : HWY_DYNAMIC_DISPATCH(target_name)();
-#if HWY_TARGETS & HWY_AVX2
-  if (level == SimdLevel::narrow && (hwy::SupportedTargets() & HWY_AVX2) != 0) {
-    kernels_in_use = N_AVX2::kernels();
-    name_in_use = N_AVX2::target_name();
-  }
-#endif
-}
-
-SimdLevel simd_level() KNOTWAVE_RT { return level_in_use.load(std::memory_order_relaxed); }
-
-const char* simd_level_name() { return name_in_use; }
 
 }  // namespace knotwave::curves
 #endif  // HWY_ONCE

@@ -4,6 +4,7 @@
 // so each sample has the bits of the scalar evaluation on every target.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 
 #include "knotwave/base/rt.h"
 
@@ -33,6 +34,7 @@ struct ControlTask {
 };
 
 struct GridKernels {
+  std::int64_t unit;  ///< the vector unit compiled for, as HWY_TARGET
   /// out[i] = piece at origin + (index + i) * step; index + n < 2^53.
   void (*grid_float)(const PieceTask&, double origin, double step, double index, float* out,
                      std::size_t n);

@@ -148,14 +148,14 @@ double MovingCurve::at(double time, std::span<const double> points) const KNOTWA
   KNOTWAVE_ASSERT(points.size() == index_of(2 * point_count_));
   MovingBlock block;
   fill(block, 0, time, [&](int i) { return points[index_of(i)]; });
-  moving_kernel()(block, degree_, halvings_, 1);
+  moving_kernels().solve(block, degree_, halvings_, 1);
   return block.out[0];
 }
 
 void MovingCurve::render(std::span<const double> times, std::span<const double* const> points,
                          std::span<double> out) const KNOTWAVE_RT {
   KNOTWAVE_ASSERT(points.size() == index_of(2 * point_count_) && times.size() == out.size());
-  const MovingKernel solve = moving_kernel();
+  const auto solve = moving_kernels().solve;
   MovingBlock block;
   for (std::size_t done = 0; done < out.size(); done += MovingBlock::kColumns) {
     const std::size_t count = std::min(MovingBlock::kColumns, out.size() - done);

@@ -3,10 +3,8 @@
 // Only Mul, Add, Sub, Div and selections: never MulAdd, whose rounding differs between targets.
 #include "moving_kernel.h"
 
-#include "knotwave/curves/curve_program.h"
+#include "knotwave/curves/simd_kernels.h"
 
-// SSSE3 machines take the baseline.
-#define HWY_DISABLED_TARGETS HWY_SSSE3
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "moving_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -129,7 +127,10 @@ void solve_degree(MovingBlock& block, int degree, int halvings, std::size_t coun
   }
 }
 
-MovingKernel kernel() { return solve_degree; }
+const MovingKernels* moving_kernels_here() {
+  static constexpr MovingKernels kKernels = {HWY_TARGET, solve_degree};
+  return &kKernels;
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace knotwave::curves
@@ -138,15 +139,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace knotwave::curves {
 namespace {
-HWY_EXPORT(kernel);
-
-// Null only while other static objects are being made: the baseline serves until then.
-const MovingKernel best_kernel = HWY_DYNAMIC_DISPATCH(kernel)();
+HWY_EXPORT(moving_kernels_here);
+const SimdKernels<MovingKernels> kernels_of("moving curves",
+                                            HWY_DYNAMIC_DISPATCH(moving_kernels_here),
+                                            HWY_CHOOSE_AVX2(moving_kernels_here),
+                                            HWY_STATIC_DISPATCH(moving_kernels_here));
 }  // namespace
 
-MovingKernel moving_kernel() KNOTWAVE_RT {
-  const bool best = best_kernel != nullptr && simd_level() != SimdLevel::baseline;
-  return best ? best_kernel : HWY_STATIC_DISPATCH(kernel)();
+const MovingKernels& moving_kernels() KNOTWAVE_RT {
+  return kernels_of.in_use(*HWY_STATIC_DISPATCH(moving_kernels_here)());
 }
 
 }  // namespace knotwave::curves

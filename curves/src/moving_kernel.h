@@ -5,6 +5,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "knotwave/curves/moving_curve.h"
 
@@ -22,10 +23,13 @@ struct MovingBlock {
   Row out{};
 };
 
-/// y where x changes sign, for the first `count` columns, to block.out.
-using MovingKernel = void (*)(MovingBlock& block, int degree, int halvings, std::size_t count);
+struct MovingKernels {
+  std::int64_t unit;  ///< the vector unit compiled for, as HWY_TARGET
+  /// y where x changes sign, for the first `count` columns, to block.out.
+  void (*solve)(MovingBlock& block, int degree, int halvings, std::size_t count);
+};
 
-/// The kernel in use. [any]
-MovingKernel moving_kernel() KNOTWAVE_RT;
+/// The kernels in use. [any]
+const MovingKernels& moving_kernels() KNOTWAVE_RT;
 
 }  // namespace knotwave::curves

@@ -5,13 +5,9 @@
 // never MulAdd, whose rounding differs between targets.
 #include "elementary_kernel.h"
 
-#include <atomic>
-
 #include "knotwave/base/elementary_coefficients.h"
-#include "knotwave/curves/curve_program.h"
+#include "knotwave/curves/simd_kernels.h"
 
-// SSSE3 machines take the baseline.
-#define HWY_DISABLED_TARGETS HWY_SSSE3
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "elementary_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -237,8 +233,8 @@ void filter(const float* cutoff_hz, const CutoffRange& range, FilterCoefficients
 }
 
 const ElementaryKernels* elementary_kernels() {
-  static constexpr ElementaryKernels kKernels = {exp2, db_to_gain, note_increments, phase_ramp,
-                                                 filter};
+  static constexpr ElementaryKernels kKernels = {HWY_TARGET,      exp2,       db_to_gain,
+                                                 note_increments, phase_ramp, filter};
   return &kKernels;
 }
 
@@ -250,15 +246,14 @@ HWY_AFTER_NAMESPACE();
 namespace knotwave::dsp {
 namespace {
 HWY_EXPORT(elementary_kernels);
-// Null only while other static objects are being made: the baseline serves until then.
-std::atomic<const ElementaryKernels*> best_kernels = HWY_DYNAMIC_DISPATCH(elementary_kernels)();
+const curves::SimdKernels<ElementaryKernels> kernels_of("elementary functions",
+                                                        HWY_DYNAMIC_DISPATCH(elementary_kernels),
+                                                        HWY_CHOOSE_AVX2(elementary_kernels),
+                                                        HWY_STATIC_DISPATCH(elementary_kernels));
 }  // namespace
 
 const ElementaryKernels& elementary_kernels_in_use() KNOTWAVE_RT {
-  const ElementaryKernels* const best = best_kernels.load(std::memory_order_relaxed);
-  return best != nullptr && curves::simd_level() != curves::SimdLevel::baseline
-             ? *best
-             : *HWY_STATIC_DISPATCH(elementary_kernels)();
+  return kernels_of.in_use(*HWY_STATIC_DISPATCH(elementary_kernels)());
 }
 
 }  // namespace knotwave::dsp

@@ -25,6 +25,7 @@ struct CutoffRange {
 
 /// Every vector unit gives the same bits. [audio]
 struct ElementaryKernels {
+  std::int64_t unit;  ///< the vector unit compiled for, as HWY_TARGET
   void (*exp2)(const double* in, double* out, std::size_t n);
   void (*db_to_gain)(const double* in, double* out, std::size_t n);
   void (*note_increments)(const double* notes, double rate_hz, base::Phase* out, std::size_t n);

@@ -4,13 +4,8 @@
 // Only Mul, Add and Sub: never MulAdd, whose rounding differs between targets.
 #include "table_kernel.h"
 
-#include <atomic>
+#include "knotwave/curves/simd_kernels.h"
 
-#include "knotwave/curves/curve_program.h"
-
-// SSSE3 machines take the baseline, which is one sample at a time; vectors of unknown length are
-// left to the 128-bit unit beside them.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "table_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -251,7 +246,7 @@ void blended(const TableRow& table, const WaveTables::RowBlend* blends, std::siz
 }
 
 const TableKernels* table_kernels() {
-  static constexpr TableKernels kKernels = {row, blended};
+  static constexpr TableKernels kKernels = {HWY_TARGET, row, blended};
   return &kKernels;
 }
 
@@ -268,15 +263,14 @@ namespace knotwave::dsp {
 namespace {
 HWY_EXPORT(table_kernels);
 HWY_EXPORT(one_sample);
-// Null only while other static objects are being made: the baseline serves until then.
-std::atomic<const TableKernels*> best_kernels = HWY_DYNAMIC_DISPATCH(table_kernels)();
+const curves::SimdKernels<TableKernels> kernels_of("wave tables",
+                                                   HWY_DYNAMIC_DISPATCH(table_kernels),
+                                                   HWY_CHOOSE_AVX2(table_kernels),
+                                                   HWY_STATIC_DISPATCH(table_kernels));
 }  // namespace
 
 const TableKernels& table_kernels_in_use() KNOTWAVE_RT {
-  const TableKernels* const best = best_kernels.load(std::memory_order_relaxed);
-  return best != nullptr && curves::simd_level() != curves::SimdLevel::baseline
-             ? *best
-             : *HWY_STATIC_DISPATCH(table_kernels)();
+  return kernels_of.in_use(*HWY_STATIC_DISPATCH(table_kernels)());
 }
 
 float read_one(const TableRow& row, const WaveTables::RowBlend& blend,

@@ -19,6 +19,7 @@ struct TableRow {
 
 /// Every pair of functions gives the bits of read_one(). [audio]
 struct TableKernels {
+  std::int64_t unit;  ///< the vector unit compiled for, as HWY_TARGET
   /// out[i] = the table at phases[i].
   void (*row)(const TableRow& row, std::span<const base::Phase> phases, float* out);
   /// The same with rows blended, by blends[i * step], step 0 or 1; `row` is row 0.

@@ -97,7 +97,7 @@ TEST(RenderCommandLine, AWrongValueNamesTheRange) {
           {render_words({"--bits", "32"}),
            "--bits: '32' is not 16, 24 or 32f; did you mean '32f'?"},
           {render_words({"--simd", "basline"}),
-           "--simd: 'basline' is not best or baseline; did you mean 'baseline'?"},
+           "--simd: 'basline' is not best, avx2 or baseline; did you mean 'baseline'?"},
       });
 }
 

@@ -12,9 +12,11 @@
 #include "curves/random_curves.h"
 #include "support/allocation_count.h"
 #include "support/seed.h"
+#include "support/simd_guard.h"
 
 namespace knotwave::curves {
 namespace {
+using support::SimdGuard;
 using testing::Draws;
 using testing::line;
 using testing::made;
@@ -29,12 +31,6 @@ CurveProgram compiled(const NurbsCurve& curve, const CompileOptions& options = {
 
 std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
 std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
-
-/// Restores the best vector unit at the end of a test.
-struct SimdGuard {
-  explicit SimdGuard(SimdLevel level) { set_simd_level(level); }
-  ~SimdGuard() { set_simd_level(SimdLevel::best); }
-};
 
 NurbsCurve with_jump() {
   CurveSpec spec;
@@ -89,7 +85,7 @@ TEST(CurveProgram, IsTheConstantZeroByDefault) {
 }
 
 TEST(CurveProgram, EveryBlockSizeUpTo130HasTheBitsOfOneSampleAtATime) {
-  for (const SimdLevel level : {SimdLevel::best, SimdLevel::baseline}) {
+  for (const SimdLevel level : simd_levels()) {
     const SimdGuard guard(level);
     SCOPED_TRACE(simd_level_name());
     const CurveProgram bell = compiled(line({0, 0.3, 1, 0.2, -0.5, 0.1, 0}, 3));
@@ -119,7 +115,7 @@ TEST(CurveProgram, RandomCurvesHaveTheSameBitsInBlocksOnEveryVectorUnit) {
                       draw.between(-1, 1) * length * (draw.chance(0.2) ? 0.3 : 0.01),
                       draw.whole(-300, 300)};
     SCOPED_TRACE(i);
-    for (const SimdLevel level : {SimdLevel::best, SimdLevel::baseline}) {
+    for (const SimdLevel level : simd_levels()) {
       const SimdGuard guard(level);
       expect_blocks_are_scalar(program, run, 150, 130);
     }
@@ -180,7 +176,7 @@ TEST(CurveProgram, ControlsThatMoveEverySampleHaveTheBitsOfOneSampleAtATime) {
     point[i] = draw.between(-1.5, 1.5);
     end[i] = draw.between(-1, 1);
   }
-  for (const SimdLevel level : {SimdLevel::best, SimdLevel::baseline}) {
+  for (const SimdLevel level : simd_levels()) {
     const SimdGuard guard(level);
     for (std::size_t block = 1; block <= u.size(); ++block) {
       CurveCursor cursor;

@@ -14,22 +14,16 @@
 #include "curves/random_curves.h"
 #include "support/allocation_count.h"
 #include "support/seed.h"
+#include "support/simd_guard.h"
 
 namespace knotwave::curves {
 namespace {
+using support::SimdGuard;
 using testing::Draws;
 using testing::line;
 using testing::made;
 using testing::random_curve;
 using testing::rational;
-
-constexpr SimdLevel kLevels[] = {SimdLevel::best, SimdLevel::narrow, SimdLevel::baseline};
-
-/// Restores the best vector unit at the end of a test.
-struct SimdGuard {
-  explicit SimdGuard(SimdLevel level) { set_simd_level(level); }
-  ~SimdGuard() { set_simd_level(SimdLevel::best); }
-};
 
 FastProgram fast(const NurbsCurve& curve,
                  double max_error = std::numeric_limits<double>::infinity()) {
@@ -89,7 +83,7 @@ TEST(FastProgram, AnySplitAndEveryVectorUnitGiveTheBitsOfOneSampleAtATime) {
     SCOPED_TRACE(i);
     for (int c = 0; c < curve.dim(); ++c) {
       const std::vector<float> one_by_one = in_blocks(program, run, 400, draw, 1, c);
-      for (const SimdLevel level : kLevels) {
+      for (const SimdLevel level : simd_levels()) {
         const SimdGuard guard(level);
         for (const int most : {3, 70, 200, 400}) {
           expect_same_bits(in_blocks(program, run, 400, draw, most, c), one_by_one);
@@ -104,7 +98,7 @@ TEST(FastProgram, EveryBlockSizeUpTo130GivesTheSameBits) {
   Draws draw(1, 1);
   const GridRun run{-0.05, 0.0083, -2};
   const std::vector<float> one_by_one = in_blocks(bell, run, 150, draw, 1);
-  for (const SimdLevel level : kLevels) {
+  for (const SimdLevel level : simd_levels()) {
     const SimdGuard guard(level);
     for (std::size_t block = 1; block <= 130; ++block) {
       std::vector<float> out(one_by_one.size());
@@ -318,7 +312,7 @@ TEST(FastProgram, RenderingDoesNotAllocate) {
 }
 
 TEST(FastProgram, EveryBuildAndVectorUnitGivesTheSameBits) {
-  for (const SimdLevel level : kLevels) {
+  for (const SimdLevel level : simd_levels()) {
     const SimdGuard guard(level);
     base::Sha256 hash;
     for (int i = 0; i < 40; ++i) {

@@ -15,6 +15,7 @@
 #include "random_curve.h"
 #include "support/allocation_count.h"
 #include "support/seed.h"
+#include "support/simd_guard.h"
 #include "time_oracle.h"
 
 namespace knotwave::test {
@@ -23,6 +24,7 @@ namespace {
 using curves::CurveSpec;
 using curves::MovingCurve;
 using curves::NurbsCurve;
+using curves::SimdLevel;
 
 constexpr double kBound = 0x1p-24;
 
@@ -244,12 +246,13 @@ TEST(MovingCurve, EveryVectorUnitGivesTheSameBits) {
     const MovingCurve live = moving(curve);
     constexpr std::size_t kCount = 61;
     const Motion motion(dice, curve, kCount);
-    std::vector<double> best(kCount), baseline(kCount);
+    std::vector<double> best(kCount), out(kCount);
     live.render(motion.times, motion.pointers, best);
-    curves::set_simd_level(curves::SimdLevel::baseline);
-    live.render(motion.times, motion.pointers, baseline);
-    curves::set_simd_level(curves::SimdLevel::best);
-    EXPECT_EQ(best, baseline) << degree;
+    for (const SimdLevel level : curves::simd_levels()) {
+      const support::SimdGuard guard(level);
+      live.render(motion.times, motion.pointers, out);
+      EXPECT_EQ(out, best) << degree << ' ' << curves::simd_level_name();
+    }
   }
 }
 

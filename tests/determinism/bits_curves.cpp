@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "knotwave/curves/compile.h"
+#include "knotwave/curves/fast_program.h"
 #include "knotwave/curves/moving_curve.h"
 #include "knotwave/curves/nurbs_curve.h"
 
@@ -45,6 +46,10 @@ void print_function(const char* name, const curves::CurveSpec& spec) {
   std::vector<float> values(kCount);
   program->evaluate_grid({program->u_min(), program->u_max(), kCount - 1}, 0, values);
   print(name, values);
+  std::vector<float> in_float(kCount);
+  curves::FastProgram(*program).evaluate_grid({program->u_min(), program->u_max(), kCount - 1}, 0,
+                                              in_float);
+  print(name + std::string("_float"), in_float);
 }
 
 void print_functions() {

@@ -7,8 +7,15 @@ renderer=$1 source=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 first=""
+has_avx2=true
+"$renderer" --demo first-light -o "$work/out.wav" --tail 0 --quiet --simd avx2 >"$work/said" 2>&1 || {
+  grep -q 'has no AVX2' "$work/said" || { cat "$work/said"; exit 1; }
+  has_avx2=false
+  cat "$work/said"
+}
 for options in "" "--block 1" "--block 7" "--block 64" "--block 4096" "--threads 2" "--threads 4" \
-  "--threads 4 --block 7" "--simd baseline" "--bits 32f"; do
+  "--threads 4 --block 7" "--simd baseline" "--simd avx2" "--bits 32f"; do
+  if [ "$options" = "--simd avx2" ] && ! "$has_avx2"; then continue; fi
   # shellcheck disable=SC2086
   "$renderer" "$source/examples/banks/general-midi.toml" "$source/examples/scores/groove.mid" \
     -o "$work/out.wav" --quiet --json "$work/report.json" $options >/dev/null

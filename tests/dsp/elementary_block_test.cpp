@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The vector functions against their scalar twins, bit by bit: numbers of every exponent, the
-// borders of each range, NaN, infinities; on the best vector unit and on the baseline; every length
-// up to a few vectors.
+// borders of each range, NaN, infinities; on every vector unit; every length up
+// to a few vectors.
 #include "knotwave/dsp/elementary_block.h"
 
 #include <bit>
@@ -13,11 +13,11 @@
 #include <gtest/gtest.h>
 
 #include "knotwave/base/elementary.h"
-#include "knotwave/curves/curve_program.h"
 #include "knotwave/dsp/filter.h"
 
 #include "support/allocation_count.h"
 #include "support/seed.h"
+#include "support/simd_guard.h"
 
 namespace {
 
@@ -49,15 +49,11 @@ std::vector<double> hard_numbers() {
 }
 
 class ElementaryBlock : public testing::TestWithParam<SimdLevel> {
- protected:
-  void SetUp() override { knotwave::curves::set_simd_level(GetParam()); }
-  void TearDown() override { knotwave::curves::set_simd_level(SimdLevel::best); }
+ private:
+  const knotwave::support::SimdGuard level_{GetParam()};
 };
-INSTANTIATE_TEST_SUITE_P(Units, ElementaryBlock,
-                         testing::Values(SimdLevel::best, SimdLevel::baseline),
-                         [](const auto& level) {
-                           return level.param == SimdLevel::best ? "best" : "baseline";
-                         });
+INSTANTIATE_TEST_SUITE_P(Units, ElementaryBlock, testing::ValuesIn(knotwave::curves::simd_levels()),
+                         [](const auto& level) { return to_string(level.param); });
 
 /// The message names the first number whose bits differ.
 template <class Number>

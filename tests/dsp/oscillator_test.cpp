@@ -13,6 +13,7 @@
 
 #include "support/allocation_count.h"
 #include "support/block_sweep.h"
+#include "support/simd_guard.h"
 #include "support/spectrum.h"
 #include "waveforms.h"
 
@@ -198,19 +199,13 @@ TEST(TableOscillator, AnySplitIntoBlocksGivesTheSameBits) {
   }
 }
 
-/// Best vector unit, then baseline; best again at the end.
 class EverySimdLevel : public testing::TestWithParam<knotwave::curves::SimdLevel> {
- protected:
-  void SetUp() override { knotwave::curves::set_simd_level(GetParam()); }
-  void TearDown() override { knotwave::curves::set_simd_level(knotwave::curves::SimdLevel::best); }
+ private:
+  const knotwave::support::SimdGuard level_{GetParam()};
 };
 INSTANTIATE_TEST_SUITE_P(TableOscillator, EverySimdLevel,
-                         testing::Values(knotwave::curves::SimdLevel::best,
-                                         knotwave::curves::SimdLevel::baseline),
-                         [](const auto& level) {
-                           return level.param == knotwave::curves::SimdLevel::best ? "best"
-                                                                                   : "baseline";
-                         });
+                         testing::ValuesIn(knotwave::curves::simd_levels()),
+                         [](const auto& level) { return to_string(level.param); });
 
 TEST_P(EverySimdLevel, GivesTheBitsOfReadSampleBySample) {
   const WaveTables tables = stereo_surface();

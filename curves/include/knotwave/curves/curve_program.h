@@ -113,14 +113,4 @@ class CurveProgram {
   std::shared_ptr<const LiveSpline> live_;  // only where knots move
 };
 
-/// Which vector unit grids are rendered with. All give the same bits; tests and benchmarks choose.
-/// narrow: AVX2 where AVX-512 would be best; other modules' kernels take it as best.
-enum class SimdLevel { best, narrow, baseline };
-/// [control], before any audio runs.
-void set_simd_level(SimdLevel level);
-/// What was set; other modules' kernels follow it. [any]
-SimdLevel simd_level() KNOTWAVE_RT;
-/// The name of what is in use, such as AVX2 or SSE2. [control]
-const char* simd_level_name();
-
 }  // namespace knotwave::curves

@@ -8,6 +8,7 @@
 
 #include "knotwave/curves/compile.h"
 #include "knotwave/curves/fast_program.h"
+#include "knotwave/curves/simd.h"
 
 #include "peers/linked_peers.h"
 #include "peers/peer_curve.h"

@@ -9,6 +9,7 @@
 #include "knotwave/base/random.h"
 #include "knotwave/curves/compile.h"
 #include "knotwave/curves/moving_curve.h"
+#include "knotwave/curves/simd.h"
 
 namespace knotwave::curves {
 namespace {

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "knotwave/base/sha256.h"
+#include "knotwave/curves/simd.h"
 #include "knotwave/io/sound_file.h"
 
 #include "apps/render_scene.h"
@@ -58,7 +59,10 @@ TEST_F(RenderProgram, BlockThreadsAndSimdChangeNoSample) {
   for (const char* threads : {"2", "4"}) {
     EXPECT_EQ(hash_in(render({"-o", "out.wav", "--threads", threads}).out), hash) << threads;
   }
-  EXPECT_EQ(hash_in(render({"-o", "out.wav", "--simd", "baseline"}).out), hash);
+  for (const curves::SimdLevel level : curves::simd_levels()) {
+    EXPECT_EQ(hash_in(render({"-o", "out.wav", "--simd", to_string(level)}).out), hash)
+        << to_string(level);
+  }
 }
 
 TEST_F(RenderProgram, ADashIsTheScoreOnStandardInput) {

@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 first=""
 has_avx2=true
-"$renderer" --demo first-light -o "$work/out.wav" --tail 0 --quiet --simd avx2 >"$work/said" 2>&1 || {
+"$renderer" --demo first-light --check --simd avx2 >"$work/said" 2>&1 || {
   grep -q 'has no AVX2' "$work/said" || { cat "$work/said"; exit 1; }
   has_avx2=false
   cat "$work/said"

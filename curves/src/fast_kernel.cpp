@@ -59,7 +59,7 @@ struct Coefficients {
 template <int Degree, bool Rational, bool Clamp>
 struct FastPiece {
   Coefficients<Degree> numerator;
-  Coefficients<Rational ? Degree : 0> denominator;
+  Coefficients<Degree * int{Rational}> denominator;
   Vector step, low, high;
 
   explicit HWY_INLINE FastPiece(const FastTask& task)

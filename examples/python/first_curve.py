@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """You learn: how Python makes a curve, finds its top, plays it into an array, and hears of a fault.
 
+Build:     cmake --preset release && cmake --build --preset release --target knotwave_python
+           (on Debian after apt-get install pybind11-dev python3-dev python3-numpy)
 Run:       PYTHONPATH=build/release/python python3 examples/python/first_curve.py
 """
 import numpy as np

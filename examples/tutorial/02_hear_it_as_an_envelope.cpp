@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // You learn: how a curve is compiled for the audio thread and played as an envelope over a tone.
-// Run:       build/release/bin/02_hear_it_as_an_envelope CURVE OUT, such as
-//            examples/curves/decay.toml out/envelope.wav
+// Run:       build/release/bin/02_hear_it_as_an_envelope examples/curves/decay.toml out/tone.wav
 // It plays:  two seconds of a 440 Hz sine that dies away by 60 dB, straight on a dB meter.
 // Next:      03_hear_it_as_a_wave.cpp
 #include <cstdio>

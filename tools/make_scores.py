@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes examples/scores/*.mid from the notes below. Standard library only; the same bytes each run.
+"""Writes examples/scores/*.mid and examples/musicians/one-note.mid from the notes below. Standard library only; the same bytes each run.
 
 The music is in the public domain and written out here from its notes: J. S. Bach, Prelude in C major
 BWV 846 (1722); C. Petzold, Minuet in G, BWV Anh. 114 (before 1725); J. Pachelbel, Canon in D (about
-1690). `groove` and `first-light` are Knotwave's own.
+1690). `groove`, `first-light` and `one-note` are Knotwave's own.
 
-usage: make_scores.py OUT_FOLDER
+usage: make_scores.py EXAMPLES_FOLDER
 """
 import os
 import struct
@@ -281,9 +281,23 @@ def first_light(folder):
     save(folder, "first-light", [lead, track])
 
 
-if __name__ == "__main__":
+# --- one note: A3 for 4 seconds -------------------------------------------------------------------
+def one_note(folder):
+    track = Track("one note", 1)
+    track.note(0, 8 * QUARTER, 57, 127)
+    save(folder, "one-note", [conductor("One note", [(0, 120)]), track])
+
+
+def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
-    os.makedirs(sys.argv[1], exist_ok=True)
+    scores, musicians = (os.path.join(sys.argv[1], name) for name in ("scores", "musicians"))
+    for folder in (scores, musicians):
+        os.makedirs(folder, exist_ok=True)
     for make in (first_light, bwv846, minuet, canon, groove):
-        make(sys.argv[1])
+        make(scores)
+    one_note(musicians)
+
+
+if __name__ == "__main__":
+    main()

@@ -213,7 +213,9 @@ TEST_F(NurbsForMusicians, FourTonesHaveTheSharesOfBernstein) {
   const double loudest = amplitude(samples, kRootHz * 1.25, 4.0 / 3);
   for (double at_s = 0.2; at_s < 3.9; at_s += 0.1) {
     const double there = amplitude(samples, kRootHz * 1.25, at_s);
-    if (std::abs(at_s - 4.0 / 3) > 0.2) EXPECT_LT(there, 0.99 * loudest) << at_s;
+    if (std::abs(at_s - 4.0 / 3) > 0.2) {
+      EXPECT_LT(there, 0.99 * loudest) << at_s;
+    }
   }
   says("with a share of 4/9; half-way the shares are 1/8, 3/8, 3/8, 1/8");
 }

@@ -17,7 +17,7 @@
 namespace knotwave::curves {
 
 /// Nodes from one anchor to the next.
-inline constexpr std::int64_t kChunk = 64;
+inline constexpr std::int64_t kChunk = 256;
 
 /// The anchor that the node would have, were all nodes in one piece.
 constexpr std::int64_t chunk_start(std::int64_t node) KNOTWAVE_RT { return node & -kChunk; }
@@ -31,7 +31,7 @@ struct FastTask {
   double shift;              ///< whole periods taken off u
   double start;              ///< u where t = 0
   double inverse_width;
-  float low, high;  ///< for pieces that are not known to stay inside
+  const float* range;  ///< [2] low, high: for pieces that are not known to stay inside
 };
 
 /// s at a node, worked out in double.
@@ -56,8 +56,8 @@ inline float fast_sample(const FastTask& task, int degree, bool clamp, float s) 
   float y = fast_horner(task.numerator, degree, s);
   if (task.denominator != nullptr) y = y / fast_horner(task.denominator, degree, s);
   if (!clamp) return y;
-  y = y < task.low ? task.low : y;
-  return y > task.high ? task.high : y;
+  y = y < task.range[0] ? task.range[0] : y;
+  return y > task.range[1] ? task.range[1] : y;
 }
 
 struct FastKernels {

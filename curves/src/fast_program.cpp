@@ -33,8 +33,8 @@ void run_one_by_one(const FastTask& task, int degree, bool clamp, std::int64_t a
 /// Nodes of a grid that lie in one piece and that float32 can count.
 struct FastStretch {
   FastTask task;  ///< all but the coordinate's own
-  int piece;
-  std::int64_t anchor;  ///< of the first node
+  int piece = 0;
+  std::int64_t anchor = 0;  ///< of the first node
 };
 
 /// What render() does with a stretch.
@@ -46,10 +46,10 @@ class FastRun {
   /// anchor in it as well: nearly every block, so in few steps. If not, other ways are taken.
   bool is_in_piece(std::int64_t count, int hint, FastStretch& stretch) const KNOTWAVE_RT {
     const CurveProgram& program = fast_.program_;
-    if (program.is_periodic() || hint < 0 || hint >= program.piece_count()) return false;
+    if (hint < 0 || hint >= fast_.near_pieces_) return false;
     const std::int64_t anchor = chunk_start(run_.first);
     const double a = node(anchor), b = node(run_.first + count - 1);
-    const double low = a < b ? a : b, high = a < b ? b : a;
+    const double low = a < b ? a : b, high = b < a ? a : b;
     const double* const breaks = program.breaks().data();
     const double start = breaks[hint];
     if (!(low >= start && high < breaks[hint + 1] && low > breaks[0])) return false;
@@ -91,8 +91,7 @@ class FastRun {
     FastTask& task = stretch.task;
     task.numerator = rows + at(coordinate) * powers;
     task.denominator = program.is_rational() ? rows + at(program.dim()) * powers : nullptr;
-    task.low = fast_.low_[at(coordinate)];
-    task.high = fast_.high_[at(coordinate)];
+    task.range = fast_.ranges_.data() + at(2 * coordinate);
     const std::int64_t first = run_.first + i;
     if (out.size() < kShortRun) {
       run_one_by_one(task, degree, clamp, stretch.anchor, first, out.data(), out.size());
@@ -102,7 +101,8 @@ class FastRun {
     }
   }
 
-  void render_accurate(std::int64_t i, int coordinate, std::span<float> out) const KNOTWAVE_RT {
+  [[gnu::noinline]] void render_accurate(std::int64_t i, int coordinate,
+                                         std::span<float> out) const KNOTWAVE_RT {
     GridRun part = run_;
     part.first += i;
     CurveCursor cursor;
@@ -148,13 +148,14 @@ class FastRun {
 FastProgram::FastProgram(CurveProgram program, double max_error) : program_(std::move(program)) {
   const int dim = program_.dim();
   const std::size_t powers = at(program_.piece_degree()) + 1;
+  near_pieces_ = program_.is_periodic() ? 0 : program_.piece_count();
   farthest_ = std::max(std::abs(program_.u_min()), std::abs(program_.u_max()));
   piece_size_ = (at(dim) + (program_.is_rational() ? 1U : 0U)) * powers;
   coefficients_.resize(at(program_.piece_count()) * piece_size_);
   forms_.resize(at(program_.piece_count() * dim));
   for (int c = 0; c < dim; ++c) {
-    low_.push_back(static_cast<float>(program_.low(c)));
-    high_.push_back(static_cast<float>(program_.high(c)));
+    ranges_.push_back(static_cast<float>(program_.low(c)));
+    ranges_.push_back(static_cast<float>(program_.high(c)));
     max_error_.push_back(0x1p-24 * largest(c));  // of accurate(), rounded
   }
   for (int piece = 0; piece < program_.piece_count(); ++piece) add_piece(piece, max_error);
@@ -179,7 +180,7 @@ void FastProgram::add_piece(int piece, double max_error) {
       row = quotient_of(row, weight, program_.piece_degree(), largest(c) + program_.max_error());
     }
     const bool stays_inside =
-        row.low - row.error > low_[at(c)] && row.high + row.error < high_[at(c)];
+        row.low - row.error > ranges_[at(2 * c)] && row.high + row.error < ranges_[at(2 * c + 1)];
     // The hull's ends, where a sample is clamped to them, are rounded.
     const double error = row.error + (stays_inside ? 0 : 0x1p-24 * largest(c));
     if (!(error <= max_error)) continue;
@@ -196,6 +197,22 @@ int FastProgram::fast_piece_count(int coordinate) const KNOTWAVE_RT {
   return count;
 }
 
+// Apart, so that the way of nearly every block needs few registers.
+[[gnu::noinline]] void FastProgram::render_pieces(const GridRun& run, std::span<float> out,
+                                                  CurveCursor& cursor,
+                                                  int coordinate) const KNOTWAVE_RT {
+  const FastRun fast(*this, run);
+  FastStretch stretch;
+  const auto count = static_cast<std::int64_t>(out.size());
+  for (std::int64_t i = 0; i < count;) {
+    const auto [length, countable] = fast.find(i, count - i, cursor, stretch);
+    const auto part = out.subspan(static_cast<std::size_t>(i), static_cast<std::size_t>(length));
+    countable ? fast.render(stretch, i, coordinate, part)
+              : fast.render_accurate(i, coordinate, part);
+    i += length;
+  }
+}
+
 void FastProgram::render(const GridRun& run, std::span<float> out, CurveCursor& cursor,
                          int coordinate) const KNOTWAVE_RT {
   const FastRun fast(*this, run);
@@ -204,13 +221,7 @@ void FastProgram::render(const GridRun& run, std::span<float> out, CurveCursor& 
   if (count > 0 && fast.is_in_piece(count, cursor.piece, stretch)) {
     return fast.render(stretch, 0, coordinate, out);
   }
-  for (std::int64_t i = 0; i < count;) {
-    const auto [length, countable] = fast.find(i, count - i, cursor, stretch);
-    const auto part = out.subspan(static_cast<std::size_t>(i), static_cast<std::size_t>(length));
-    countable ? fast.render(stretch, i, coordinate, part)
-              : fast.render_accurate(i, coordinate, part);
-    i += length;
-  }
+  render_pieces(run, out, cursor, coordinate);
 }
 
 void FastProgram::render(const GridRun& run, std::span<const std::span<float>> out,

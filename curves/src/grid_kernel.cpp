@@ -45,19 +45,45 @@ HWY_INLINE Vector clamp_to(Vector y, double low, double high) {
 #endif
 }
 
+/// Numbers that every lane takes, kept in registers.
+template <int Degree>
+struct GridRow {
+  Vector c[Degree + 1];
+
+  explicit HWY_INLINE GridRow(const double* row) {
+    for (int k = 0; k <= Degree; ++k) c[k] = hn::Set(kLanes, row[k]);
+  }
+  HWY_INLINE Vector at(Vector t) const {
+    Vector sum = c[Degree];
+    for (int k = Degree - 1; k >= 0; --k) sum = hn::Add(hn::Mul(sum, t), c[k]);
+    return sum;
+  }
+};
+
 /// u to value, without controls. Shifted: whole periods are taken off u; taking off 0 would change
 /// no bit.
 template <int Degree, bool Rational, bool Clamp, bool Shifted>
 struct Piece {
-  PieceTask task;
+  GridRow<Degree> numerator;
+  GridRow<Degree* int{Rational}> denominator;
+  Vector shift, start, inverse_width;
+  double low, high;
+
+  explicit HWY_INLINE Piece(const PieceTask& task)
+      : numerator(task.numerator),
+        denominator(Rational ? task.denominator : task.numerator),
+        shift(hn::Set(kLanes, task.shift)),
+        start(hn::Set(kLanes, task.start)),
+        inverse_width(hn::Set(kLanes, task.inverse_width)),
+        low(task.low),
+        high(task.high) {}
 
   HWY_INLINE Vector at(Vector u) const {
-    if constexpr (Shifted) u = hn::Sub(u, hn::Set(kLanes, task.shift));
-    const Vector local = hn::Sub(u, hn::Set(kLanes, task.start));
-    const Vector t = hn::Mul(local, hn::Set(kLanes, task.inverse_width));
-    Vector y = horner<Degree>(task.numerator, t);
-    if constexpr (Rational) y = hn::Div(y, horner<Degree>(task.denominator, t));
-    if constexpr (Clamp) y = clamp_to(y, task.low, task.high);
+    if constexpr (Shifted) u = hn::Sub(u, shift);
+    const Vector t = hn::Mul(hn::Sub(u, start), inverse_width);
+    Vector y = numerator.at(t);
+    if constexpr (Rational) y = hn::Div(y, denominator.at(t));
+    if constexpr (Clamp) y = clamp_to(y, low, high);
     return y;
   }
 };
@@ -83,6 +109,15 @@ HWY_INLINE void render_grid(const Evaluator& piece, double origin, double step, 
   const Vector stride = hn::Set(kLanes, static_cast<double>(lanes));
   Vector node = hn::Iota(kLanes, index);  // whole numbers below 2^53: sums are exact
   std::size_t i = 0;
+  // Two at once: a sum of nodes has time to finish.
+  const Vector two = hn::Add(stride, stride);
+  Vector next = hn::Add(node, stride);
+  for (; i + 2 * lanes <= n; i += 2 * lanes) {
+    store(piece.at(hn::Add(first, hn::Mul(node, by))), out + i);
+    store(piece.at(hn::Add(first, hn::Mul(next, by))), out + i + lanes);
+    node = hn::Add(node, two);
+    next = hn::Add(next, two);
+  }
   for (; i + lanes <= n; i += lanes) {
     store(piece.at(hn::Add(first, hn::Mul(node, by))), out + i);
     node = hn::Add(node, stride);
@@ -115,9 +150,9 @@ HWY_INLINE void render_array(const Evaluator& piece, const double* HWY_RESTRICT 
 template <int Degree, bool Rational, class Run>
 HWY_INLINE void with_form(const PieceTask& task, const Run& run) {
   // A shifted piece is clamped where it need not be: that changes no bit either.
-  if (task.shift != 0) return run(Piece<Degree, Rational, true, true>{task});
-  if (task.clamp) return run(Piece<Degree, Rational, true, false>{task});
-  return run(Piece<Degree, Rational, false, false>{task});
+  if (task.shift != 0) return run(Piece<Degree, Rational, true, true>(task));
+  if (task.clamp) return run(Piece<Degree, Rational, true, false>(task));
+  return run(Piece<Degree, Rational, false, false>(task));
 }
 
 template <int Degree, class Run>

@@ -12,7 +12,7 @@ namespace knotwave::curves {
 
 /// Pieces as powers of s = t - 1/2 in float32, made from a program and kept beside it. Values do
 /// not hang on the block size or the vector unit, but on the grid: a node's parameter is worked out
-/// in double every 64th node and in float from there on. Controls are at rest. Immutable; copying
+/// in double every 256th node and in float from there on. Controls are at rest. Immutable; copying
 /// is [control]. docs/compile.md, Fast programs.
 class FastProgram {
  public:
@@ -52,13 +52,16 @@ class FastProgram {
 
   double largest(int coordinate) const;
   void add_piece(int piece, double max_error);
+  void render_pieces(const GridRun& run, std::span<float> out, CurveCursor& cursor,
+                     int coordinate) const KNOTWAVE_RT;
 
   CurveProgram program_;
+  int near_pieces_ = 0;              // pieces that a hint may name: none of a periodic program
   double farthest_ = 0;              // of the ends of the domain, from 0
   std::size_t piece_size_ = 0;       // floats of a piece: (dim + rational) * (degree + 1)
   std::vector<float> coefficients_;  // [(piece * rows + row) * (degree + 1) + power]
   std::vector<Form> forms_;          // [piece * dim + coordinate]
-  std::vector<float> low_, high_;    // [dim]
+  std::vector<float> ranges_;        // [dim * 2] low, high
   std::vector<double> max_error_;    // [dim]
 };
 

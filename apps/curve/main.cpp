@@ -31,8 +31,9 @@ int print(const Result<std::string>& text) { return text ? print(*text) : say(te
 int deliver(const CurveOptions& options, const Result<Made>& made) {
   if (!made) return say(made.error());
   if (options.output.empty() || options.output == "-") {
-    std::fputs(made->report.c_str(), stderr);
-    return print(made->text);
+    const int code = print(made->text);
+    if (code == kExitOk) std::fputs(made->report.c_str(), stderr);
+    return code;
   }
   const auto written = base::write_file(options.output, made->text);
   return written ? print(options.output + ": written\n" + made->report) : say(written.error());

@@ -262,6 +262,12 @@ TEST_F(CurveEdits, WithoutAFileTheCurveGoesToStandardOutputAndTheReportBeside) {
             "points = [0, 0.5, 1]\n");
   EXPECT_EQ(plain.err, "ramp: degree 2, 3 points, u 0 to 1\n");
   EXPECT_EQ(run({"elevate", file_ + "#ramp", "-o", "-"}).out, plain.out);
+  const ProgramRun full = support::run_program(
+      {"/bin/sh", "-c", "exec " KNOTWAVE_BIN_DIR "/knotwave-curve elevate \"$0\" >/dev/full",
+       file_ + "#ramp"});
+  EXPECT_EQ(full.exit_code, 75);
+  EXPECT_EQ(full.err,
+            "knotwave-curve: error: cannot write to standard output: No space left on device\n");
 }
 
 TEST_F(CurveEdits, UsageErrorsEndWith2AndWriteNothing) {

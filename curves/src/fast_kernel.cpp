@@ -171,7 +171,7 @@ const SimdKernels<FastKernels> kernels_of("grid in float", HWY_DYNAMIC_DISPATCH(
 }  // namespace
 
 const FastKernels& fast_kernels() KNOTWAVE_RT {
-  return kernels_of.in_use(*HWY_STATIC_DISPATCH(fast_kernels_here)());
+  return kernels_of.in_use(HWY_STATIC_DISPATCH(fast_kernels_here));
 }
 
 }  // namespace knotwave::curves

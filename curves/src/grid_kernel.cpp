@@ -287,7 +287,7 @@ const SimdKernels<GridKernels> kernels_of("grid in double", HWY_DYNAMIC_DISPATCH
 }  // namespace
 
 const GridKernels& grid_kernels() KNOTWAVE_RT {
-  return kernels_of.in_use(*HWY_STATIC_DISPATCH(kernels)());
+  return kernels_of.in_use(HWY_STATIC_DISPATCH(kernels));
 }
 
 }  // namespace knotwave::curves

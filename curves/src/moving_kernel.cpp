@@ -147,7 +147,7 @@ const SimdKernels<MovingKernels> kernels_of("moving curves",
 }  // namespace
 
 const MovingKernels& moving_kernels() KNOTWAVE_RT {
-  return kernels_of.in_use(*HWY_STATIC_DISPATCH(moving_kernels_here)());
+  return kernels_of.in_use(HWY_STATIC_DISPATCH(moving_kernels_here));
 }
 
 }  // namespace knotwave::curves

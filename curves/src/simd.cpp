@@ -12,7 +12,6 @@
 namespace knotwave::curves {
 namespace {
 
-std::atomic<SimdLevel> level_in_use = SimdLevel::best;
 const SimdFamily* first_family = nullptr;  // families are made one by one, as static objects
 
 constexpr bool kBuildHasAvx2 = (HWY_TARGETS & HWY_AVX2) != 0;
@@ -26,6 +25,8 @@ std::int64_t usable_units() {
 }
 
 }  // namespace
+
+std::atomic<SimdLevel> simd_level_in_use = SimdLevel::best;
 
 SimdFamily::SimdFamily(const char* name, std::int64_t best, std::int64_t avx2,
                        std::int64_t baseline)
@@ -55,11 +56,11 @@ Result<void> set_simd_level(SimdLevel level) {
                                             std::string(best_of(usable_units())) +
                                             "; best and baseline work");
   }
-  level_in_use = level;
+  simd_level_in_use = level;
   return {};
 }
 
-SimdLevel simd_level() KNOTWAVE_RT { return level_in_use.load(std::memory_order_relaxed); }
+SimdLevel simd_level() KNOTWAVE_RT { return simd_level_in_use.load(std::memory_order_relaxed); }
 
 std::vector<SimdLevel> simd_levels() {
   if (!kBuildHasAvx2 || !processor_has_avx2()) return {SimdLevel::best, SimdLevel::baseline};

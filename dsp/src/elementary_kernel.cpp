@@ -253,7 +253,7 @@ const curves::SimdKernels<ElementaryKernels> kernels_of("elementary functions",
 }  // namespace
 
 const ElementaryKernels& elementary_kernels_in_use() KNOTWAVE_RT {
-  return kernels_of.in_use(*HWY_STATIC_DISPATCH(elementary_kernels)());
+  return kernels_of.in_use(HWY_STATIC_DISPATCH(elementary_kernels));
 }
 
 }  // namespace knotwave::dsp

@@ -270,7 +270,7 @@ const curves::SimdKernels<TableKernels> kernels_of("wave tables",
 }  // namespace
 
 const TableKernels& table_kernels_in_use() KNOTWAVE_RT {
-  return kernels_of.in_use(*HWY_STATIC_DISPATCH(table_kernels)());
+  return kernels_of.in_use(HWY_STATIC_DISPATCH(table_kernels));
 }
 
 float read_one(const TableRow& row, const WaveTables::RowBlend& blend,

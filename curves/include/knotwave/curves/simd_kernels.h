@@ -2,6 +2,7 @@
 // How a module's kernels follow set_simd_level(). For the files that Highway compiles once for each
 // vector unit; everybody else includes simd.h.
 #pragma once
+#include <atomic>
 #include <cstdint>
 
 #include "knotwave/base/rt.h"
@@ -31,6 +32,9 @@ class SimdFamily {
   const SimdFamily* next_;
 };
 
+/// What simd_level() reads. Here, so that choosing kernels takes no call.
+extern std::atomic<SimdLevel> simd_level_in_use;
+
 /// Whether this processor has what Highway's AVX2 kernels need.
 bool processor_has_avx2();
 
@@ -52,11 +56,11 @@ class SimdKernels : private SimdFamily {
 
   /// The table of simd_level(). `baseline` is given because this object may be used while it waits
   /// to be made, among other static objects: it is 0 then, and the baseline serves.
-  const Table& in_use(const Table& baseline) const KNOTWAVE_RT {
-    const SimdLevel level = simd_level();
+  const Table& in_use(Get baseline) const KNOTWAVE_RT {
+    const SimdLevel level = simd_level_in_use.load(std::memory_order_relaxed);
     if (level == SimdLevel::best && best_ != nullptr) return *best_;
     if (level == SimdLevel::avx2 && avx2_ != nullptr) return *avx2_;
-    return baseline;
+    return *baseline();
   }
 
  private:

@@ -125,21 +125,24 @@ class Table {
 
 }  // namespace
 
+Result<Data> data_of_table(std::string_view text, const std::string& source) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  Table table(source);
+  for (int line = 1; !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    if (const auto added = table.add(text.substr(0, end), line); !added) return added.error();
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return std::move(table).data();
+}
+
 Result<Data> read_data(const std::string& path) {
   for (const auto ending : kSoundEndings) {
     if (base::has_ending(path, ending)) return data_of_sound(path);
   }
   const auto file = base::read_file(path, kMaxTableBytes);
   if (!file) return file.error();
-  std::string_view rest = *file;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-  Table table(path);
-  for (int line = 1; !rest.empty(); ++line) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    if (const auto added = table.add(rest.substr(0, end), line); !added) return added.error();
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return std::move(table).data();
+  return data_of_table(*file, path);
 }
 
 }  // namespace knotwave::curve_app

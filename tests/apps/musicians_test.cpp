@@ -133,7 +133,7 @@ TEST_F(NurbsForMusicians, EveryCommandWorksAndMakesWhatItNames) {
     EXPECT_THAT(done.out, HasSubstr((*at)[1].str() + ": "));
     ++files;
   }
-  EXPECT_EQ(files, 20);
+  EXPECT_EQ(files, 22);
 }
 
 TEST_F(NurbsForMusicians, EveryPictureIsWhatItsCommandDraws) {
@@ -152,7 +152,7 @@ TEST_F(NurbsForMusicians, EveryPictureIsWhatItsCommandDraws) {
   const std::string script = commands();
   const std::regex plot("knotwave-curve plot");
   EXPECT_EQ(pictures, std::distance(std::sregex_iterator(script.begin(), script.end(), plot), {}));
-  EXPECT_EQ(pictures, 9);
+  EXPECT_EQ(pictures, 10);
 }
 
 TEST_F(NurbsForMusicians, EveryPatchOfTheFolderIsPlayed) {
@@ -273,6 +273,21 @@ TEST_F(NurbsForMusicians, AMovedPointActsOnFourSpansAndNoSampleElse) {
   says("Before 1 second and after 3 the two files are the same, sample for sample.");
   EXPECT_NEAR(level_db(moved, 2) - level_db(still, 2), 11.3, 0.1);
   says("At 2 seconds the second sound is 11.3 dB louder.");
+}
+
+TEST_F(NurbsForMusicians, CrowdedKnotsMakeTheFirstSwellsFiveTimesAsQuick) {
+  const auto slow = sound("6-spline-moved"), quick = sound("7-knots");
+  const double long_s = 4.0 / 110, short_s = 2.0 / 110;
+  const double peak = level_db(quick, 0.2, short_s);
+  EXPECT_NEAR(peak, level_db(slow, 1, long_s), 0.05);
+  for (const double beside_s : {-0.04, -0.03, 0.03, 0.04}) {
+    EXPECT_LT(level_db(quick, 0.2 + beside_s, short_s), peak - 0.3) << "a swell stands there";
+  }
+  for (const double before_s : {0.03, 0.05, 0.08}) {
+    EXPECT_NEAR(level_db(quick, 0.2 - before_s, short_s), level_db(slow, 1 - 5 * before_s, 0.1),
+                0.2);
+  }
+  says("the second swell, which stood at 1 s, is at 0.2 s, and as loud");
 }
 
 TEST_F(NurbsForMusicians, WeightsMakeTheDecayStraight) {

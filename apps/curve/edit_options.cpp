@@ -41,8 +41,7 @@ constexpr const char* kFitExample =
     "  knotwave-curve fit cycle.wav --points 24 -o cycle.toml\n"
     "A row of a table is a time and 1 to 4 values, or one value; a first row of\n"
     "words and lines that begin with # are skipped. Of a sound, u is seconds and\n"
-    "channels are coordinates. --within is for one value a row, and holds between\n"
-    "the data too; --points takes all.";
+    "channels are coordinates. --within holds between the data too.";
 constexpr const char* kImportExample =
     "Examples:\n"
     "  knotwave-curve import drawing.svg -o drawn.toml\n"

@@ -31,11 +31,6 @@ Result<Made> fitted(const CurveOptions& options) {
                                                        " data; a fit takes at most " +
                                                        std::to_string(kMaxData)));
   }
-  if (data->dim > 1 && options.points == 0) {
-    return fail(ErrorCode::usage, std::to_string(data->dim) +
-                                      " values at each time: --within is for one, --points N "
-                                      "takes all");
-  }
   double largest = 0;
   for (const double value : data->values) largest = std::max(largest, std::abs(value));
   if (largest == 0) largest = 1;
@@ -43,7 +38,8 @@ Result<Made> fitted(const CurveOptions& options) {
   const auto fit =
       options.points > 0
           ? curves::approximate(data->times, data->values, data->dim, degree, options.points)
-          : curves::reduce_data(data->times, data->values, tolerance_of(options, largest), degree);
+          : curves::reduce_data(data->times, data->values, tolerance_of(options, largest), degree,
+                                data->dim);
   if (!fit) return told_of(options.files.front(), fit.error());
   const auto named = renamed(fit->curve, name_of(options));
   if (!named) return named.error();

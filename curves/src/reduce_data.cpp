@@ -21,23 +21,28 @@ using base::number_text;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 // An upper bound of how far a curve is from a line: its Bézier points' distance from those of the
-// line. What is far below the tolerance needs no better one.
-double polygon_distance(const BezierPiece& curve, const BezierPiece& line) {
+// line, its coordinates added up. What is far below the tolerance needs no better one.
+double polygon_distance(const BezierPiece& curve, const BezierPiece& line, int dim) {
   const std::size_t p = curve.points.size() - 1;
   double largest = 0;
   for (std::size_t j = 0; j <= p; ++j) {
     const HomogeneousPoint on_line =
         blend(line.points[0], line.points[1], static_cast<double>(j), static_cast<double>(p - j));
-    largest = std::max(largest, std::abs((curve.points[j].x[0] - on_line.x[0]).hi));
+    double distance = 0;
+    for (std::size_t c = 0; c < index_of(dim); ++c) {
+      distance += std::abs((curve.points[j].x[c] - on_line.x[c]).hi);
+    }
+    largest = std::max(largest, distance);
   }
   return largest;
 }
 
 class DataReduction {
  public:
-  DataReduction(const Samples& data, double tolerance, int degree)
-      : data_(data), tolerance_(tolerance), bounds_(data.at.size() - 1) {
+  DataReduction(const Samples& data, double tolerance, int degree, int dim)
+      : data_(data), dim_(index_of(dim)), tolerance_(tolerance), bounds_(data.at.size() - 1) {
     spline_.degree = degree;
+    spline_.dim = dim;
     spline_.knots.assign(index_of(degree + 1), data.at.front());
     spline_.knots.insert(spline_.knots.end(), index_of(degree + 1), data.at.back());
     sample_lines();
@@ -58,37 +63,48 @@ class DataReduction {
   bool remove_knot(int knot);
   void split_failing_spans();
 
+  std::span<const double> datum(std::size_t i) const {
+    return data_.values.subspan(i * dim_, dim_);
+  }
+  void add_sample(double at, std::size_t line, double fraction);
+
   Samples data_;
+  std::size_t dim_;
   double tolerance_;
   std::vector<double> at_, values_;  // the lines, with places between the data
   Spline spline_;
   std::vector<double> bounds_;  // one a line
 };
 
+// The place on a line, `fraction` of the way along it.
+void DataReduction::add_sample(double at, std::size_t line, double fraction) {
+  at_.push_back(at);
+  for (std::size_t c = 0; c < dim_; ++c) {
+    const double value = datum(line)[c];
+    values_.push_back(fraction == 0 ? value : value + (datum(line + 1)[c] - value) * fraction);
+  }
+}
+
 // As many places on each line as it takes to settle a polynomial of the degree there.
 void DataReduction::sample_lines() {
   const int between = std::max(spline_.degree, 2);
   for (std::size_t i = 0; i + 1 < data_.at.size(); ++i) {
     const double t = data_.at[i], step = data_.at[i + 1] - t;
-    const double value = data_.values[i], rise = data_.values[i + 1] - value;
-    at_.push_back(t);
-    values_.push_back(value);
+    add_sample(t, i, 0);
     for (int k = 1; k <= between; ++k) {
       const double fraction = static_cast<double>(k) / (between + 1);
       const double place = t + step * fraction;
       if (!(place > at_.back() && place < data_.at[i + 1])) continue;
-      at_.push_back(place);
-      values_.push_back(value + rise * fraction);
+      add_sample(place, i, fraction);
     }
   }
-  at_.push_back(data_.at.back());
-  values_.push_back(data_.values.back());
+  add_sample(data_.at.back(), data_.at.size() - 1, 0);
 }
 
 bool DataReduction::fit_all() {
-  spline_.points.assign(index_of(spline_.count()), 0.0);
-  spline_.points.front() = data_.values.front();
-  spline_.points.back() = data_.values.back();
+  spline_.points.assign(index_of(spline_.count()) * dim_, 0.0);
+  std::ranges::copy(datum(0), spline_.points.begin());
+  std::ranges::copy(datum(data_.at.size() - 1), spline_.points.end() - std::ptrdiff_t(dim_));
   if (!fit_points(spline_, {at_, values_}, 1, spline_.count() - 2)) return false;
   bounds_ = measure(spline_, 0, spline_.count() - 1);
   return true;
@@ -100,13 +116,13 @@ std::vector<double> DataReduction::measure(const Spline& spline, int first, int 
   const double from = spline.knots[index_of(first + p)], to = spline.knots[index_of(last + 1)];
   HomogeneousCurve part;
   part.degree = p;
-  part.dim = 1;
+  part.dim = spline.dim;
   part.domain = {from, to, false};
   for (int i = first; i <= last + p + 1; ++i) {
     part.knots.push_back({0, spline.knots[index_of(i)]});
   }
   for (int i = first; i <= last; ++i) {
-    part.points.emplace_back(std::span(&spline.points[index_of(i)], 1), 1.0);
+    part.points.emplace_back(std::span(spline.points).subspan(index_of(i) * dim_, dim_), 1.0);
   }
   std::vector<double> bounds;
   auto line = std::lower_bound(data_.at.begin(), data_.at.end(), from) - data_.at.begin();
@@ -116,11 +132,11 @@ std::vector<double> DataReduction::measure(const Spline& spline, int first, int 
     const BezierPiece curve = piece_between(part, left, right);
     BezierPiece straight{left, right, {}};
     for (const std::size_t end : {i, i + 1}) {
-      straight.points.emplace_back(data_.values.subspan(end, 1), 1.0);
+      straight.points.emplace_back(datum(end), 1.0);
     }
-    const double rough = polygon_distance(curve, straight);
+    const double rough = polygon_distance(curve, straight, spline.dim);
     const bool near = rough <= tolerance_ / 16;
-    bounds.push_back(near ? rough : distance_bound(curve, straight, 1, kNoLimit));
+    bounds.push_back(near ? rough : distance_bound(curve, straight, spline.dim, kNoLimit));
   }
   return bounds;
 }
@@ -189,7 +205,9 @@ bool DataReduction::remove_knot(int knot) {
   const int p = spline_.degree;
   Spline fewer = spline_;
   fewer.knots.erase(fewer.knots.begin() + knot);
-  fewer.points.erase(fewer.points.begin() + std::clamp(knot - p / 2 - 1, 1, fewer.count() - 1));
+  const int spare = std::clamp(knot - p / 2 - 1, 1, fewer.count() - 1);
+  const auto point = fewer.points.begin() + std::ptrdiff_t(index_of(spare) * dim_);
+  fewer.points.erase(point, point + std::ptrdiff_t(dim_));
   const int last_point = fewer.count() - 1;
   // Basis functions knot - p - 1 .. knot - 1 are new; as many again to either side are fitted too.
   const int first = std::max(1, knot - 2 * p - 2), last = std::min(last_point - 1, knot + p);
@@ -221,7 +239,7 @@ void DataReduction::remove_knots() {
 }  // namespace
 
 Result<FittedCurve> reduce_data(std::span<const double> times, std::span<const double> values,
-                                double tolerance, int degree) {
+                                double tolerance, int degree, int dim) {
   const std::string what = "reduced data";
   const Samples data{times, values};
   if (degree < 1 || degree > kMaxDegree) {
@@ -232,12 +250,12 @@ Result<FittedCurve> reduce_data(std::span<const double> times, std::span<const d
     return fail(ErrorCode::value_out_of_range,
                 what + ": a tolerance of " + number_text(tolerance) + " must be above 0");
   }
-  if (auto good = check_samples(what, data, 1); !good) return good.error();
+  if (auto good = check_samples(what, data, dim); !good) return good.error();
   if (times.size() < 2) {
     return fail(ErrorCode::too_few_points,
                 what + ": 2 data or more are needed, found " + std::to_string(times.size()));
   }
-  DataReduction reduction(data, tolerance, degree);
+  DataReduction reduction(data, tolerance, degree, dim);
   if (auto good = reduction.add_knots(); !good) return good.error();
   reduction.remove_knots();
   auto curve = curve_of("reduced", reduction.spline());

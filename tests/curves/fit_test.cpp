@@ -230,6 +230,55 @@ TEST(ReduceData, ProvesItsBoundForAnyDataAndDegree) {
   }
 }
 
+// Coordinates that have nothing to do with each other: the distance is Euclidean, and between the
+// data it is that of the lines.
+TEST(ReduceData, ProvesItsBoundInTwoToFourCoordinates) {
+  Dice dice(test_seed());
+  for (int round = 0; round < test_count(30); ++round) {
+    const int dim = 2 + dice.below(3), degree = 1 + dice.below(4), n = 2 + dice.below(40);
+    std::vector<double> times, values;
+    for (int i = 0; i < n; ++i) {
+      times.push_back(i * 0.1 + dice.between(0, 0.05));
+      values.push_back(std::sin(times.back()));
+      values.push_back(dice.one_in(3) ? 1.5 : std::floor(times.back()));
+      for (int c = 2; c < dim; ++c) values.push_back(dice.between(-0.1, 0.1));
+    }
+    const double tolerance = std::pow(10, dice.between(-4, -1));
+    const auto fit = curves::reduce_data(times, values, tolerance, degree, dim);
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_LE(fit->max_error, tolerance);
+    const auto d = static_cast<std::size_t>(dim);
+    double place[curves::kMaxDim];
+    for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+      for (const double x : {0.0, 0.2, 0.5, 0.9, 1.0}) {
+        fit->curve.evaluate(times[i] + x * (times[i + 1] - times[i]), place);
+        double square = 0;
+        for (std::size_t c = 0; c < d; ++c) {
+          const double line = values[i * d + c] + x * (values[(i + 1) * d + c] - values[i * d + c]);
+          square += (place[c] - line) * (place[c] - line);
+        }
+        EXPECT_LE(std::sqrt(square), fit->max_error + 4e-15);
+      }
+    }
+    fit->curve.evaluate(times.back(), place);
+    EXPECT_TRUE(std::equal(place, place + d, values.end() - dim));
+  }
+}
+
+TEST(ReduceData, OneCoordinateTwiceIsOneCoordinate) {
+  std::vector<double> times, values, twice;
+  for (int i = 0; i <= 100; ++i) {
+    times.push_back(i / 100.0);
+    values.push_back(std::sin(7 * times.back()));
+    twice.insert(twice.end(), 2, values.back());
+  }
+  const auto one = curves::reduce_data(times, values, 1e-3);
+  const auto two = curves::reduce_data(times, twice, 1e-3 * std::numbers::sqrt2, 3, 2);
+  ASSERT_TRUE(one && two);
+  EXPECT_NEAR(two->max_error, one->max_error * std::numbers::sqrt2, 1e-9);
+  EXPECT_EQ(two->curve.point_count(), one->curve.point_count());
+}
+
 TEST(ReduceData, NeedsNoInnerKnotForAStraightLineNorMoreThanOneCornerForTwo) {
   std::vector<double> times, line, bent;
   for (int i = 0; i <= 64; ++i) {
@@ -255,6 +304,8 @@ TEST(ReduceData, NamesWhatIsWrong) {
   EXPECT_EQ(curves::reduce_data(times, values, NAN).error().code, ErrorCode::value_out_of_range);
   EXPECT_EQ(curves::reduce_data(back, values, 0.1).error().code, ErrorCode::knots_decrease);
   EXPECT_EQ(curves::reduce_data(times, {values.data(), 2}, 0.1).error().code,
+            ErrorCode::dimension_mismatch);
+  EXPECT_EQ(curves::reduce_data(times, values, 0.1, 3, 2).error().code,
             ErrorCode::dimension_mismatch);
   EXPECT_EQ(curves::reduce_data({times.data(), 1}, {values.data(), 1}, 0.1).error().code,
             ErrorCode::too_few_points);

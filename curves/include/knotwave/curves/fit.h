@@ -39,16 +39,16 @@ struct FittedCurve {
 Result<FittedCurve> approximate(std::span<const double> parameters, std::span<const double> values,
                                 int dim, int degree, int point_count);
 
-/// Values over time (recorded automation, a drawn line) as a curve with few points: everywhere, not
-/// only at the data, it is within `tolerance` of the straight lines from one datum to the next, and
-/// max_error <= tolerance is the proof of that, from Bézier points, rounding included. The first
-/// and last value are met exactly. Knots are put at data times where the bound fails, more of them
-/// at corners; then those that the tolerance can spare are taken out, each with its neighbourhood
-/// fitted anew. Not the fewest points there could be. Errors: too_few_points (n < 2),
-/// degree_out_of_range, value_out_of_range (tolerance not above 0), error_bound_missed (the
+/// Values [n*dim] over time (recorded automation, a drawn line) as a curve with few points:
+/// everywhere, not only at the data, it is within `tolerance` of the straight lines from one datum
+/// to the next, and max_error <= tolerance is the proof of that, from Bézier points, rounding
+/// included. The first and last value are met exactly. Knots are put at data times where the bound
+/// fails, more of them at corners; then those that the tolerance can spare are taken out, each with
+/// its neighbourhood fitted anew. Not the fewest points there could be. Errors: too_few_points (n <
+/// 2), degree_out_of_range, value_out_of_range (tolerance not above 0), error_bound_missed (the
 /// tolerance is below the rounding of the values), knots_decrease, dimension_mismatch, not_finite,
 /// too_many_points (more than kMaxPoints needed).
 Result<FittedCurve> reduce_data(std::span<const double> times, std::span<const double> values,
-                                double tolerance, int degree = 3);
+                                double tolerance, int degree = 3, int dim = 1);
 
 }  // namespace knotwave::curves

@@ -5,7 +5,7 @@
 
 namespace knotwave::curves {
 
-double KnotDomain::place(double u, Side side) const noexcept {
+double KnotDomain::place(double u, Side side) const KNOTWAVE_RT {
   if (std::isnan(u)) return low;
   if (!periodic) return std::clamp(u, low, high);
   if (!std::isfinite(u)) return low;

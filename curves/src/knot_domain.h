@@ -30,7 +30,7 @@ struct KnotDomain {
 
   /// u inside [low, high]: clamped, or wrapped (high becomes low, except for Side::left, where low
   /// becomes high) and rounded once. NaN and infinite phases count as low.
-  double place(double u, Side side) const noexcept;
+  double place(double u, Side side) const KNOTWAVE_RT;
   /// The one name a knot has: the end of a period is the start of the next.
   Knot knot(double u, int period = 0) const noexcept {
     return periodic && u == high ? Knot{period + 1, low} : Knot{period, u};

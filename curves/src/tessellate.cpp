@@ -55,7 +55,8 @@ class StepCost {
   /// How many times as long a step would cost about 1.
   double growth(double cost) const { return is_error() ? std::sqrt(1 / cost) : 1 / cost; }
 
-  double first_guess(double a) const { return next_knot(a) - a; }
+  /// What is left of the span from a on.
+  double rest_of_span(double a) const { return next_knot(a) - a; }
 
  private:
   static constexpr double kTooMuch = 6;
@@ -86,25 +87,51 @@ class StepCost {
     }
   }
 
-  // Against the straight line between the values at a and b.
+  // Against the straight line between the values at a and b. The line is written over the weights
+  // of the piece, one degree higher: then both have the same denominator, and the bound of what is
+  // left is a sharp one.
   double error_of(double a, double b) const {
-    const auto dim = index_of(curve_.dim());
     const Value first = value_at(a, Side::right), last = value_at(b, Side::left);
-    const HomogeneousPoint start{std::span<const double>(first).first(dim), 1};
-    const HomogeneousPoint end{std::span<const double>(last).first(dim), 1};
-    const auto line_at = [&](double u) {
-      return blend(start, end, DoubleDouble::difference(u, a), DoubleDouble::difference(b, u));
-    };
     const auto& policy = std::get<MaxError>(sampling_);
     const double allowed = policy.full_scale * base::db_to_gain(policy.error_db);
     double cost = 0;
-    for_each_piece(a, b, [&](double left, double right, const BezierPiece& piece) {
-      const BezierPiece line{piece.left, piece.right, {line_at(left), line_at(right)}};
+    for_each_piece(a, b, [&](double left, double right, BezierPiece piece) {
+      const auto line_at = [&](double u) {
+        std::array<DoubleDouble, kMaxDim> at;
+        const DoubleDouble from_a = DoubleDouble::difference(u, a);
+        const DoubleDouble to_b = DoubleDouble::difference(b, u);
+        for (std::size_t c = 0; c < at.size(); ++c) {
+          at[c] = (to_b * first[c] + from_a * last[c]) / (from_a + to_b);
+        }
+        return at;
+      };
+      const BezierPiece line = over_weights(line_at(left), line_at(right), piece);
+      raise_degree(piece.points);
       const double error = distance_bound(piece, line, curve_.dim(), kTooMuch * allowed);
       cost = std::max(cost, error / allowed);
       return cost <= kTooMuch;
     });
     return cost;
+  }
+
+  using Place = std::array<DoubleDouble, kMaxDim>;
+
+  // The product of a line and the weight of a piece, in Bernstein form.
+  static BezierPiece over_weights(const Place& start, const Place& end, const BezierPiece& piece) {
+    BezierPiece line = piece;
+    raise_degree(line.points);
+    const std::size_t degree = piece.points.size();
+    for (std::size_t j = 0; j <= degree; ++j) {
+      const DoubleDouble of_start =
+          j < degree ? piece.points[j].w * static_cast<double>(degree - j) : DoubleDouble(0.0);
+      const DoubleDouble of_end =
+          j > 0 ? piece.points[j - 1].w * static_cast<double>(j) : DoubleDouble(0.0);
+      for (std::size_t c = 0; c < start.size(); ++c) {
+        line.points[j].x[c] =
+            (of_start * start[c] + of_end * end[c]) / DoubleDouble(static_cast<double>(degree));
+      }
+    }
+    return line;
   }
 
   // From the least to the greatest of the values at both ends and the points of all pieces.
@@ -137,12 +164,12 @@ class StepCost {
 /// Steps as long as their cost allows.
 class StepSearch {
  public:
-  StepSearch(const NurbsCurve& curve, const Sampling& sampling)
-      : cost_(curve, sampling), shortest_((curve.u_max() - curve.u_min()) * 0x1p-40) {}
+  StepSearch(const NurbsCurve& curve, const Sampling& sampling) : cost_(curve, sampling) {}
 
   /// The end of the step that begins at a, at most `end`; none if even the shortest costs too much.
   std::optional<double> next(double a, double end) {
-    if (!(length_ > 0)) length_ = cost_.first_guess(a);
+    if (!(length_ > 0)) length_ = cost_.rest_of_span(a);
+    const double shortest = cost_.rest_of_span(a) * 0x1p-40;
     double good = a, bad = std::numeric_limits<double>::infinity();
     double b = std::min(a + length_, end);
     for (int tries = 0; tries < kMostTries && b > a; ++tries) {
@@ -153,7 +180,7 @@ class StepSearch {
       double wanted = a + (b - a) * std::clamp(times, 0.3, 4.0);
       if (!(wanted > good && wanted < bad)) wanted = good + (std::min(bad, end) - good) / 2;
       if (good > a && wanted - good < 0.03 * (good - a)) break;
-      if (wanted - a < shortest_) break;
+      if (wanted - a < shortest) break;
       b = std::min(wanted, end);
     }
     if (!(good > a)) return std::nullopt;
@@ -166,7 +193,6 @@ class StepSearch {
   static constexpr double kCaution = 0.98;  // a little short of what is expected to cost 1
 
   StepCost cost_;
-  double shortest_;
   double length_ = 0;  ///< of the last step
 };
 

@@ -133,7 +133,7 @@ TEST(Tessellate, AParabolaTakesAsFewStepsAsItCan) {
 
 TEST(Tessellate, NoPlaceIsFartherThanTheErrorAskedFor) {
   Dice dice(support::test_seed());
-  for (int round = 0; round < support::test_count(40); ++round) {
+  for (int round = 0; round < support::test_count(300); ++round) {
     const NurbsCurve curve = random_curve(dice);
     const double full_scale = largest_coordinate(curve);
     if (!(full_scale > 0)) continue;
@@ -145,7 +145,7 @@ TEST(Tessellate, NoPlaceIsFartherThanTheErrorAskedFor) {
 
 TEST(Tessellate, NoStepMovesFartherThanAskedFor) {
   Dice dice(support::test_seed());
-  for (int round = 0; round < support::test_count(40); ++round) {
+  for (int round = 0; round < support::test_count(300); ++round) {
     const NurbsCurve curve = random_curve(dice);
     const double size = largest_coordinate(curve) * dice.between(0.01, 0.3);
     if (!(size > 0)) continue;

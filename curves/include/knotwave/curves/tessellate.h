@@ -34,11 +34,11 @@ using Sampling = std::variant<FixedStep, MaxError, MaxStep>;
 /// Parameters that increase, the first and the last included; no jump of the curve lies between.
 using Stretch = std::vector<double>;
 
-/// Where a curve is sampled over [u_a, u_b]: stretches between its jumps, each step as long as the
-/// policy allows, to 5 % or so. Knots of multiplicity >= degree (corners) are always among them.
-/// Errors: value_out_of_range (a policy's number is not positive or not finite), parameter_out_of_
-/// range (u_a or u_b outside the domain), empty_domain (u_a >= u_b), error_bound_missed (no step is
-/// short enough: the policy asks for less than rounding), too_many_points (over max_values).
+/// Where a curve is sampled over [u_a, u_b]: stretches between its jumps, steps nearly as long as
+/// the policy allows. Knots of multiplicity >= degree (corners) are always among them. Errors:
+/// value_out_of_range (a policy's number is not positive or not finite), parameter_out_of_ range
+/// (u_a or u_b outside the domain), empty_domain (u_a >= u_b), error_bound_missed (no step is short
+/// enough: the policy asks for less than rounding), too_many_points (over max_values).
 Result<std::vector<Stretch>> sample_parameters(const NurbsCurve& curve, const Sampling& sampling,
                                                double u_a, double u_b, int max_values = 1 << 20);
 

@@ -4,6 +4,7 @@
 // a note, and there is one pass for each picture: the knot moves the notes.
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "gallery.h"
 #include "picture.h"
@@ -69,7 +70,8 @@ void draw_panel(Picture& picture, const Frame& frame, const Functions& all, doub
     const auto last =
         std::find_if(all[k].rbegin(), all[k].rend(), is_there).base() - all[k].begin();
     std::vector<Point> line;
-    for (auto i = first; i < last; ++i) {
+    for (auto i = std::max(first - 1, std::ptrdiff_t{0});
+         i < std::min(last + 1, std::ptrdiff_t{kSteps + 1}); ++i) {
       line.push_back(frame.at(double(i) / kSteps, all[k][std::size_t(i)]));
     }
     std::vector<Point> below = line;

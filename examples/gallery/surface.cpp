@@ -20,16 +20,16 @@ using curves::Target;
 namespace {
 
 /// Heights, one row a v. Rows end where they begin: they are cycles.
-constexpr std::array<double, 16> kHeights = {0.0, 1.9,  -1.9, 0.0,  //
+constexpr std::array<double, 16> kHeights = {0.0, 1.5,  -1.3, 0.0,  //
                                              0.0, 0.6,  1.5,  0.0,  //
-                                             0.0, -1.5, 0.7,  0.0,  //
-                                             0.0, 1.4,  1.2,  0.0};
+                                             0.0, -1.2, 0.7,  0.0,  //
+                                             0.0, 1.5,  1.2,  0.0};
 constexpr int kAcross = 64, kDeep = 48;
 
 /// Seen from the front, the left and above. u runs to the right, v away.
 Point place(double u, double v, double height) {
   const double x = u - 0.5, y = v - 0.5;
-  return {480 + 560 * x + 250 * y, 410 + 84 * x - 290 * y - 100 * height};
+  return {480 + 560 * x + 250 * y, 405 + 84 * x - 290 * y - 100 * height};
 }
 
 /// Low is blue, high is orange; facing the light from the left is bright.
@@ -120,14 +120,14 @@ Result<void> surface(const std::string& folder) {
   std::vector<double> heights((kAcross + 1) * (kDeep + 1));
   const curves::MapSet::Channel channel{Target::wave_position, 0, heights};
   maps.evaluate_mesh({0, 1, kAcross}, 0, kAcross + 1, {0, 1, kDeep}, 0, {&channel, 1});
-  Picture picture(1000, 680, "A bi-cubic Bézier surface",
+  Picture picture(1000, 720, "A bi-cubic Bézier surface",
                   "16 points: four curves side by side, and one across them at every u");
   draw_net(picture, 1);
   draw_surface(picture, heights);
   draw_net(picture, 0.4);  // what lies in front shines through
   for (std::size_t k = 0; k < 16; ++k) picture.dot(net_point(k % 4, k / 4), 6, kOrange);
   const Point u = place(0.5, -0.08, 0), v = place(1.08, 0.5, 0);
-  picture.text({u.x, u.y + 40}, "u: phase", {.size = 15, .anchor = "middle", .bold = true});
+  picture.text({u.x - 90, u.y + 60}, "u: phase", {.size = 15, .anchor = "middle", .bold = true});
   picture.text({v.x + 8, v.y}, "v: time", {.size = 15, .bold = true});
   if (auto ok = picture.save(folder + "/surface.svg"); !ok) return ok;
   return play(as_given, folder + "/surface.wav");

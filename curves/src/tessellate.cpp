@@ -10,6 +10,7 @@
 
 #include "knotwave/base/document.h"
 #include "knotwave/base/elementary.h"
+#include "knotwave/base/index.h"
 #include "knotwave/curves/map_grid.h"
 
 #include "curve_distance.h"
@@ -17,9 +18,8 @@
 namespace knotwave::curves {
 namespace {
 
+using base::index_of;
 using base::number_text;
-
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 Result<void> check(const NurbsCurve& curve, const Sampling& sampling) {
   const auto refuse = [&](const char* name, double value) {
@@ -169,7 +169,8 @@ class StepSearch {
   /// The end of the step that begins at a, at most `end`; none if even the shortest costs too much.
   std::optional<double> next(double a, double end) {
     if (!(length_ > 0)) length_ = cost_.rest_of_span(a);
-    const double shortest = cost_.rest_of_span(a) * 0x1p-40;
+    // Weights may put all that happens into 1e-12 of a span; below an ulp of u there is no step.
+    const double shortest = std::max(std::abs(a) * 0x1p-52, cost_.rest_of_span(a) * 0x1p-80);
     double good = a, bad = std::numeric_limits<double>::infinity();
     double b = std::min(a + length_, end);
     for (int tries = 0; tries < kMostTries && b > a; ++tries) {
@@ -271,10 +272,10 @@ class Sampler {
         }
         const auto next = search_.next(stretch.back(), end);
         if (!next) {
-          return fail(ErrorCode::error_bound_missed,
-                      "curve '" + curve_.name() +
-                          "': no step from u = " + number_text(stretch.back()) +
-                          " is short enough: the policy asks for less than values are rounded by");
+          return fail(
+              ErrorCode::error_bound_missed,
+              "curve '" + curve_.name() + "': no step from u = " + number_text(stretch.back()) +
+                  " is short enough: the policy asks for less than u and values are rounded by");
         }
         stretch.push_back(*next);
       }

@@ -10,12 +10,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "knotwave/base/index.h"
+
 #include "random_curve.h"
 #include "support/seed.h"
 
 namespace knotwave::test {
 namespace {
 
+using base::index_of;
 using curves::CurveSpec;
 using curves::FixedStep;
 using curves::MaxError;
@@ -27,8 +30,6 @@ using curves::Stretch;
 using curves::TessellatorCalls;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 NurbsCurve made(int degree, std::vector<double> points, std::vector<double> knots = {},
                 std::vector<double> jumps = {}, int dim = 1) {
@@ -48,6 +49,22 @@ std::vector<Stretch> sampled(const NurbsCurve& curve, const Sampling& sampling) 
   auto stretches = sample_parameters(curve, sampling, curve.u_min(), curve.u_max());
   EXPECT_TRUE(stretches) << (stretches ? "" : stretches.error().message);
   return stretches ? std::move(*stretches) : std::vector<Stretch>{};
+}
+
+/// Steps of a random curve, or none where it is refused for the one good reason: somewhere it moves
+/// too fast for the doubles of u, a span being only so many of them wide.
+std::vector<Stretch> sampled_if_it_can_be(const NurbsCurve& curve, const Sampling& sampling) {
+  auto stretches = sample_parameters(curve, sampling, curve.u_min(), curve.u_max());
+  if (stretches) return std::move(*stretches);
+  EXPECT_EQ(stretches.error().code, ErrorCode::error_bound_missed) << stretches.error().message;
+  double narrowest = curve.u_max() - curve.u_min();
+  for (std::size_t i = 1; i < curve.knots().size(); ++i) {
+    const double width = curve.knots()[i] - curve.knots()[i - 1];
+    if (width > 0) narrowest = std::min(narrowest, width);
+  }
+  const double farthest = std::max(std::abs(curve.u_min()), std::abs(curve.u_max()));
+  EXPECT_LT(narrowest, farthest * 0x1p-35) << stretches.error().message;
+  return {};
 }
 
 using Value = std::array<double, curves::kMaxDim>;
@@ -133,24 +150,33 @@ TEST(Tessellate, AParabolaTakesAsFewStepsAsItCan) {
 
 TEST(Tessellate, NoPlaceIsFartherThanTheErrorAskedFor) {
   Dice dice(support::test_seed());
-  for (int round = 0; round < support::test_count(300); ++round) {
+  const int rounds = support::test_count(300);
+  int refused = 0;
+  for (int round = 0; round < rounds; ++round) {
     const NurbsCurve curve = random_curve(dice);
     const double full_scale = largest_coordinate(curve);
     if (!(full_scale > 0)) continue;
     const double error_db = dice.between(-60, -20);
-    const auto stretches = sampled(curve, MaxError{error_db, full_scale});
+    const auto stretches = sampled_if_it_can_be(curve, MaxError{error_db, full_scale});
+    refused += stretches.empty() ? 1 : 0;
     EXPECT_LE(worst_error(curve, stretches), full_scale * std::pow(10, error_db / 20) * (1 + 1e-9));
   }
+  EXPECT_LE(refused, rounds / 20);
 }
 
 TEST(Tessellate, NoStepMovesFartherThanAskedFor) {
   Dice dice(support::test_seed());
-  for (int round = 0; round < support::test_count(300); ++round) {
+  const int rounds = support::test_count(300);
+  int refused = 0;
+  for (int round = 0; round < rounds; ++round) {
     const NurbsCurve curve = random_curve(dice);
     const double size = largest_coordinate(curve) * dice.between(0.01, 0.3);
     if (!(size > 0)) continue;
-    EXPECT_LE(longest_move(curve, sampled(curve, MaxStep{size})), size);
+    const auto stretches = sampled_if_it_can_be(curve, MaxStep{size});
+    refused += stretches.empty() ? 1 : 0;
+    EXPECT_LE(longest_move(curve, stretches), size);
   }
+  EXPECT_LE(refused, rounds / 20);
 }
 
 TEST(Tessellate, AControllerRampTakesAStepAValue) {
@@ -299,7 +325,7 @@ TEST(Tessellate, LessThanRoundingIsNoStep) {
   CurveSpec spec;
   spec.name = "large";
   spec.degree = 2;
-  spec.points = {1e6, 1e6 + 1.0 / 3, 1e6};
+  spec.points = {9e5, 9e5 + 1.0 / 3, 9e5};
   const auto refused = tessellate(*NurbsCurve::create(spec), MaxError{-300}, {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::error_bound_missed);

@@ -6,12 +6,13 @@
 #include <string>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 #include "knotwave/curves/compile.h"
 
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) KNOTWAVE_RT { return static_cast<std::size_t>(i); }
+using base::index_of;
 std::size_t index_of(Target target) KNOTWAVE_RT { return static_cast<std::size_t>(target); }
 
 /// Nodes of a grid that are worked on together.

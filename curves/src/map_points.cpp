@@ -4,12 +4,13 @@
 #include <string>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/index.h"
 #include "knotwave/curves/map.h"
 
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 std::string name_of(const MapKey& key) { return std::string("map of ") + to_string(key.target); }
 

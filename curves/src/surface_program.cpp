@@ -3,13 +3,15 @@
 
 #include <algorithm>
 
+#include "knotwave/base/index.h"
+
 #include "grid_kernel.h"
 #include "knot_domain.h"
 
 namespace knotwave::curves {
 namespace {
 
-std::size_t index_of(int i) KNOTWAVE_RT { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 int cell_of(std::span<const double> breaks, double x) KNOTWAVE_RT {
   const auto inner = breaks.subspan(1, breaks.size() - 2);

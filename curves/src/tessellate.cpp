@@ -5,15 +5,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string>
 
 #include "knotwave/base/document.h"
-#include "knotwave/base/elementary.h"
 #include "knotwave/base/index.h"
 #include "knotwave/curves/map_grid.h"
 
-#include "curve_distance.h"
+#include "step_search.h"
 
 namespace knotwave::curves {
 namespace {
@@ -27,7 +25,7 @@ Result<void> check(const NurbsCurve& curve, const Sampling& sampling) {
                                                    number_text(value) +
                                                    " is not positive and finite");
   };
-  const auto is_size = [](double x) { return std::isfinite(x) && x > 0; };
+  const auto is_size = [](double x) { return std::isnormal(x) && x > 0; };
   if (const auto* fixed = std::get_if<FixedStep>(&sampling)) {
     if (!is_size(fixed->steps_per_u)) return refuse("steps_per_u", fixed->steps_per_u);
   } else if (const auto* error = std::get_if<MaxError>(&sampling)) {
@@ -42,160 +40,6 @@ Result<void> check(const NurbsCurve& curve, const Sampling& sampling) {
   }
   return {};
 }
-
-/// What one step of a policy costs: 1 is what is allowed.
-class StepCost {
- public:
-  StepCost(const NurbsCurve& curve, const Sampling& sampling)
-      : curve_(curve), homogeneous_(curve), sampling_(sampling) {}
-
-  /// Over [a, b], inside one stretch. Above kTooMuch it may be more than it says.
-  double of(double a, double b) const { return is_error() ? error_of(a, b) : movement_of(a, b); }
-
-  /// How many times as long a step would cost about 1.
-  double growth(double cost) const { return is_error() ? std::sqrt(1 / cost) : 1 / cost; }
-
-  /// What is left of the span from a on.
-  double rest_of_span(double a) const { return next_knot(a) - a; }
-
- private:
-  static constexpr double kTooMuch = 6;
-  using Value = std::array<double, kMaxDim>;
-
-  bool is_error() const { return std::holds_alternative<MaxError>(sampling_); }
-
-  double next_knot(double u) const {
-    const auto knots = curve_.knots();
-    return std::min(curve_.u_max(), *std::upper_bound(knots.begin(), knots.end() - 1, u));
-  }
-
-  Value value_at(double u, Side side) const {
-    Value value{};
-    curve_.evaluate(u, side, value);
-    return value;
-  }
-
-  /// work(piece) for each span's part of [a, b] while it returns true.
-  template <class Work>
-  void for_each_piece(double a, double b, Work work) const {
-    const KnotDomain& domain = homogeneous_.domain;
-    for (double left = a; left < b;) {
-      const double right = std::min(b, next_knot(left));
-      const Knot end = domain.knot(right);
-      if (!work(left, right, piece_between(homogeneous_, domain.knot(left), end))) return;
-      left = right;
-    }
-  }
-
-  // Against the straight line between the values at a and b. The line is written over the weights
-  // of the piece, one degree higher: then both have the same denominator, and the bound of what is
-  // left is a sharp one.
-  double error_of(double a, double b) const {
-    const Value first = value_at(a, Side::right), last = value_at(b, Side::left);
-    const auto& policy = std::get<MaxError>(sampling_);
-    const double allowed = policy.full_scale * base::db_to_gain(policy.error_db);
-    double cost = 0;
-    for_each_piece(a, b, [&](double left, double right, BezierPiece piece) {
-      const auto line_at = [&](double u) {
-        std::array<DoubleDouble, kMaxDim> at;
-        const DoubleDouble from_a = DoubleDouble::difference(u, a);
-        const DoubleDouble to_b = DoubleDouble::difference(b, u);
-        for (std::size_t c = 0; c < at.size(); ++c) {
-          at[c] = (to_b * first[c] + from_a * last[c]) / (from_a + to_b);
-        }
-        return at;
-      };
-      const BezierPiece line = over_weights(line_at(left), line_at(right), piece);
-      raise_degree(piece.points);
-      const double error = distance_bound(piece, line, curve_.dim(), kTooMuch * allowed);
-      cost = std::max(cost, error / allowed);
-      return cost <= kTooMuch;
-    });
-    return cost;
-  }
-
-  using Place = std::array<DoubleDouble, kMaxDim>;
-
-  // The product of a line and the weight of a piece, in Bernstein form.
-  static BezierPiece over_weights(const Place& start, const Place& end, const BezierPiece& piece) {
-    BezierPiece line = piece;
-    raise_degree(line.points);
-    const std::size_t degree = piece.points.size();
-    for (std::size_t j = 0; j <= degree; ++j) {
-      const DoubleDouble of_start =
-          j < degree ? piece.points[j].w * static_cast<double>(degree - j) : DoubleDouble(0.0);
-      const DoubleDouble of_end =
-          j > 0 ? piece.points[j - 1].w * static_cast<double>(j) : DoubleDouble(0.0);
-      for (std::size_t c = 0; c < start.size(); ++c) {
-        line.points[j].x[c] =
-            (of_start * start[c] + of_end * end[c]) / DoubleDouble(static_cast<double>(degree));
-      }
-    }
-    return line;
-  }
-
-  // From the least to the greatest of the values at both ends and the points of all pieces.
-  double movement_of(double a, double b) const {
-    const auto dim = index_of(curve_.dim());
-    Value low = value_at(a, Side::right), high = low;
-    double longest = 0;
-    const auto include = [&](std::size_t c, double x) {
-      low[c] = std::min(low[c], x);
-      high[c] = std::max(high[c], x);
-      longest = std::max(longest, high[c] - low[c]);
-    };
-    const Value last = value_at(b, Side::left);
-    for (std::size_t c = 0; c < dim; ++c) include(c, last[c]);
-    const double allowed = std::get<MaxStep>(sampling_).size;
-    for_each_piece(a, b, [&](double, double, const BezierPiece& piece) {
-      for (const HomogeneousPoint& point : piece.points) {
-        for (std::size_t c = 0; c < dim; ++c) include(c, (point.x[c] / point.w).hi);
-      }
-      return longest <= kTooMuch * allowed;
-    });
-    return longest / allowed;
-  }
-
-  const NurbsCurve& curve_;
-  HomogeneousCurve homogeneous_;
-  const Sampling& sampling_;
-};
-
-/// Steps as long as their cost allows.
-class StepSearch {
- public:
-  StepSearch(const NurbsCurve& curve, const Sampling& sampling) : cost_(curve, sampling) {}
-
-  /// The end of the step that begins at a, at most `end`; none if even the shortest costs too much.
-  std::optional<double> next(double a, double end) {
-    if (!(length_ > 0)) length_ = cost_.rest_of_span(a);
-    // Weights may put all that happens into 1e-12 of a span; below an ulp of u there is no step.
-    const double shortest = std::max(std::abs(a) * 0x1p-52, cost_.rest_of_span(a) * 0x1p-80);
-    double good = a, bad = std::numeric_limits<double>::infinity();
-    double b = std::min(a + length_, end);
-    for (int tries = 0; tries < kMostTries && b > a; ++tries) {
-      const double cost = cost_.of(a, b);
-      (cost <= 1 ? good : bad) = b;
-      if (good == end || (good == b && cost > 0.9)) break;
-      const double times = kCaution * cost_.growth(std::max(cost, 1e-3));
-      double wanted = a + (b - a) * std::clamp(times, 0.3, 4.0);
-      if (!(wanted > good && wanted < bad)) wanted = good + (std::min(bad, end) - good) / 2;
-      if (good > a && wanted - good < 0.03 * (good - a)) break;
-      if (wanted - a < shortest) break;
-      b = std::min(wanted, end);
-    }
-    if (!(good > a)) return std::nullopt;
-    length_ = good - a;
-    return good;
-  }
-
- private:
-  static constexpr int kMostTries = 80;
-  static constexpr double kCaution = 0.98;  // a little short of what is expected to cost 1
-
-  StepCost cost_;
-  double length_ = 0;  ///< of the last step
-};
 
 struct InnerKnots {
   std::vector<double> corners;  ///< multiplicity >= degree
@@ -272,10 +116,8 @@ class Sampler {
         }
         const auto next = search_.next(stretch.back(), end);
         if (!next) {
-          return fail(
-              ErrorCode::error_bound_missed,
-              "curve '" + curve_.name() + "': no step from u = " + number_text(stretch.back()) +
-                  " is short enough: the policy asks for less than u and values are rounded by");
+          return fail(ErrorCode::error_bound_missed,
+                      "curve '" + curve_.name() + "': " + search_.why_none(stretch.back()));
         }
         stretch.push_back(*next);
       }

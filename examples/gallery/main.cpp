@@ -38,8 +38,7 @@ int main(int argc, char** argv) {
   }
   const std::string folder = argv[1];
   std::error_code failed;
-  std::filesystem::create_directories(folder,
-                                      failed);  // what is wrong shows when files are written
+  std::filesystem::create_directories(folder, failed);  // a fault shows when files are written
   for (const auto& made :
        {gallery::string_art(folder, 3), gallery::string_art(folder, 4), gallery::bernstein(folder),
         gallery::surface(folder), gallery::moving_knot(folder)}) {
@@ -47,6 +46,16 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", made.error().to_string().c_str());
     return 1;
   }
-  std::printf("%s: 5 pictures, 5 sounds\n", folder.c_str());
+  std::printf(
+      "%s: 5 pictures (.svg) and what they sound like (.wav)\n"
+      "string_art_quadratic  left and right the pitches of the two ends of a string, in the "
+      "middle\n"
+      "                      that of the curve: it leaves the left one and arrives at the right "
+      "one\n"
+      "string_art_cubic      the same; the ends are quadratic curves themselves\n"
+      "bernstein             four notes from low to high, each as loud as its point weighs\n"
+      "surface               u read as one cycle of a wave at 110 Hz, while v goes from 0 to 1\n"
+      "moving_knot           six notes, one a function, once for each place of the knot\n",
+      folder.c_str());
   return 0;
 }

@@ -104,7 +104,9 @@ Result<void> moving_knot(const std::string& folder) {
     const auto heard = functions(kMoving[i], kPass - 1);
     if (!heard) return heard.error();
     for (std::size_t k = 0; k < kFunctions; ++k) {
-      for (const double level : (*heard)[k]) levels[k].push_back(0.5 * level);
+      for (std::size_t j = 0; j < kPass; ++j) {
+        levels[k].push_back(0.5 * fade(j, kPass) * (*heard)[k][j]);
+      }
     }
   }
   if (auto ok = picture.save(folder + "/moving_knot.svg"); !ok) return ok;

@@ -30,13 +30,16 @@ void Stereo::add_tone(std::span<const double> notes, std::span<const double> lev
   }
 }
 
+double fade(std::size_t i, std::size_t n) {
+  constexpr std::size_t kFrames = kRateHz / 100;
+  return static_cast<double>(std::min({i, n - 1 - i, kFrames})) / kFrames;
+}
+
 Result<void> Stereo::save(const std::string& path) {
-  constexpr std::size_t kFade = kRateHz / 100;
   const std::size_t frames = left.size();
   std::vector<float> both(2 * frames);
   for (std::size_t i = 0; i < frames; ++i) {
-    const std::size_t from_end = std::min({i, frames - 1 - i, kFade});
-    const float gain = static_cast<float>(from_end) / kFade;
+    const auto gain = static_cast<float>(fade(i, frames));
     both[2 * i] = left[i] * gain;
     both[2 * i + 1] = right[i] * gain;
   }

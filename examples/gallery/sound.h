@@ -11,6 +11,9 @@ namespace gallery {
 
 inline constexpr int kRateHz = 48000;
 
+/// The gain at frame i of n: 10 ms to rise at the start and to fall at the end.
+double fade(std::size_t i, std::size_t n);
+
 /// Left and right of a sound.
 struct Stereo {
   std::vector<float> left, right;

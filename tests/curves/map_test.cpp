@@ -11,6 +11,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "knotwave/base/index.h"
+
 #include "random_curve.h"
 #include "support/allocation_count.h"
 #include "support/block_sweep.h"
@@ -36,7 +38,7 @@ using testing::HasSubstr;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 NurbsCurve bezier(std::vector<double> points, int dim = 1, std::vector<double> weights = {}) {
   CurveSpec spec;

@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "knotwave/base/index.h"
+
 #include "random_curve.h"
 #include "support/allocation_count.h"
 #include "support/seed.h"
@@ -21,7 +23,7 @@ using curves::NurbsSurface;
 using curves::SurfaceProgram;
 using curves::SurfaceSpec;
 
-std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+using base::index_of;
 
 std::vector<double> random_knots(Dice& dice, int count, int degree) {
   std::vector<double> knots(index_of(count + degree + 1));

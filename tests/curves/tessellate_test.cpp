@@ -2,9 +2,12 @@
 #include "knotwave/curves/tessellate.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -51,27 +54,33 @@ std::vector<Stretch> sampled(const NurbsCurve& curve, const Sampling& sampling) 
   return stretches ? std::move(*stretches) : std::vector<Stretch>{};
 }
 
-/// Steps of a random curve, or none where it is refused for the one good reason: somewhere it moves
-/// too fast for the doubles of u, a span being only so many of them wide.
-std::vector<Stretch> sampled_if_it_can_be(const NurbsCurve& curve, const Sampling& sampling) {
-  auto stretches = sample_parameters(curve, sampling, curve.u_min(), curve.u_max());
-  if (stretches) return std::move(*stretches);
-  EXPECT_EQ(stretches.error().code, ErrorCode::error_bound_missed) << stretches.error().message;
-  double narrowest = curve.u_max() - curve.u_min();
-  for (std::size_t i = 1; i < curve.knots().size(); ++i) {
-    const double width = curve.knots()[i] - curve.knots()[i - 1];
-    if (width > 0) narrowest = std::min(narrowest, width);
-  }
-  const double farthest = std::max(std::abs(curve.u_min()), std::abs(curve.u_max()));
-  EXPECT_LT(narrowest, farthest * 0x1p-35) << stretches.error().message;
-  return {};
-}
-
 using Value = std::array<double, curves::kMaxDim>;
 Value value_at(const NurbsCurve& curve, double u, Side side) {
   Value value{};
   curve.evaluate(u, side, value);
   return value;
+}
+
+/// Steps of no coordinate by more than `size`, or none if that is refused for the one good reason:
+/// from the double that is named to the next one the curve moves by more.
+std::vector<Stretch> sampled_if_it_can_be(const NurbsCurve& curve, double size) {
+  auto stretches = sample_parameters(curve, MaxStep{size}, curve.u_min(), curve.u_max());
+  if (stretches) return std::move(*stretches);
+  const std::string& message = stretches.error().message;
+  EXPECT_EQ(stretches.error().code, ErrorCode::error_bound_missed) << message;
+  constexpr std::string_view kBefore = "no step from u = ";
+  double u = 0;
+  const auto at = message.find(kBefore);
+  EXPECT_NE(at, std::string::npos) << message;
+  std::from_chars(message.data() + at + kBefore.size(), message.data() + message.size(), u);
+  const Value from = value_at(curve, u, Side::right);
+  const Value to = value_at(curve, std::nextafter(u, 1e300), Side::left);
+  double farthest = 0;
+  for (std::size_t c = 0; c < index_of(curve.dim()); ++c) {
+    farthest = std::max(farthest, std::abs(to[c] - from[c]));
+  }
+  EXPECT_GT(farthest, size) << message;
+  return {};
 }
 
 /// Work for each step and for places inside it: first, last, and the curve's value at t of it.
@@ -151,17 +160,14 @@ TEST(Tessellate, AParabolaTakesAsFewStepsAsItCan) {
 TEST(Tessellate, NoPlaceIsFartherThanTheErrorAskedFor) {
   Dice dice(support::test_seed());
   const int rounds = support::test_count(300);
-  int refused = 0;
   for (int round = 0; round < rounds; ++round) {
     const NurbsCurve curve = random_curve(dice);
     const double full_scale = largest_coordinate(curve);
     if (!(full_scale > 0)) continue;
     const double error_db = dice.between(-60, -20);
-    const auto stretches = sampled_if_it_can_be(curve, MaxError{error_db, full_scale});
-    refused += stretches.empty() ? 1 : 0;
+    const auto stretches = sampled(curve, MaxError{error_db, full_scale});
     EXPECT_LE(worst_error(curve, stretches), full_scale * std::pow(10, error_db / 20) * (1 + 1e-9));
   }
-  EXPECT_LE(refused, rounds / 20);
 }
 
 TEST(Tessellate, NoStepMovesFartherThanAskedFor) {
@@ -172,11 +178,49 @@ TEST(Tessellate, NoStepMovesFartherThanAskedFor) {
     const NurbsCurve curve = random_curve(dice);
     const double size = largest_coordinate(curve) * dice.between(0.01, 0.3);
     if (!(size > 0)) continue;
-    const auto stretches = sampled_if_it_can_be(curve, MaxStep{size});
+    const auto stretches = sampled_if_it_can_be(curve, size);
     refused += stretches.empty() ? 1 : 0;
     EXPECT_LE(longest_move(curve, stretches), size);
   }
   EXPECT_LE(refused, rounds / 20);
+}
+
+// Over most of a span the cost of a step says nothing of its length: all that is to be stepped over
+// lies in 1e-12 of it.
+TEST(Tessellate, StepsAreFoundWhereWeightsPutEverythingIntoAPointOfTheSpan) {
+  CurveSpec spec;
+  spec.name = "switch";
+  spec.degree = 1;
+  spec.points = {0, 1};
+  spec.weights = {1e-6, 1e6};
+  const NurbsCurve curve = *NurbsCurve::create(spec);
+  for (const Sampling& sampling : {Sampling(MaxError{-40}), Sampling(MaxStep{0.05})}) {
+    const auto stretches = sampled(curve, sampling);
+    EXPECT_LE(worst_error(curve, stretches), 0.05);
+    EXPECT_LT(stretches.front()[1], 1e-12);
+    EXPECT_LT(step_count(stretches), 40u);
+  }
+  EXPECT_LE(longest_move(curve, sampled(curve, MaxStep{0.05})), 0.05);
+}
+
+TEST(Tessellate, MoreThanAStepBetweenNeighbouringDoublesIsRefusedWithThePlace) {
+  CurveSpec spec;
+  spec.name = "far from 0";
+  spec.degree = 1;
+  spec.points = {0, 1};
+  spec.weights = {1e-6, 1e6};
+  spec.knots = {1024, 1024, 1025, 1025};
+  const NurbsCurve curve = *NurbsCurve::create(spec);
+  const auto refused = sample_parameters(curve, MaxStep{0.125}, 1024, 1025);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::error_bound_missed);
+  // 2^-42 of the span, and the weights are 1e12 apart: t 1e12 / (1 - t + t 1e12).
+  EXPECT_THAT(refused.error().message,
+              testing::MatchesRegex("curve 'far from 0': no step from u = 1024 is short enough: up "
+                                    "to u = 1024.0000000000002, the next one there is, it moves by "
+                                    "0.1852[0-9]*, but no more than 0.125 was asked for"));
+  EXPECT_LE(longest_move(curve, sampled(curve, MaxStep{0.19})), 0.19);
+  sampled(curve, MaxError{-120});  // from one double to the next no u is missed
 }
 
 TEST(Tessellate, AControllerRampTakesAStepAValue) {
@@ -329,6 +373,8 @@ TEST(Tessellate, LessThanRoundingIsNoStep) {
   const auto refused = tessellate(*NurbsCurve::create(spec), MaxError{-300}, {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::error_bound_missed);
+  EXPECT_THAT(refused.error().message,
+              HasSubstr("values are rounded by more than the error asked for, -300 dB re 1"));
 }
 
 }  // namespace

@@ -18,14 +18,15 @@ namespace knotwave::curves {
 struct FixedStep {
   double steps_per_u = 100;
 };
-/// The straight lines are nowhere farther from the curve, at the same u, than error_db re
-/// full_scale (GLU_PARAMETRIC_ERROR). Proved from Bézier points, the rounding of values included.
+/// The straight lines are at no u, any double, farther from the curve than error_db re full_scale
+/// (GLU_PARAMETRIC_ERROR). Proved from Bézier points, the rounding of values included.
 struct MaxError {
   double error_db = -96;
   double full_scale = 1;
 };
 /// No coordinate moves by more than `size` within a step, not even to come back (GLU_PATH_LENGTH):
-/// the greatest slew. Proved by hulls.
+/// the greatest slew. Proved by hulls. Weights of 1e-6 beside 1e6 may move a curve by more than
+/// `size` between two neighbouring doubles of u; that is an error, with the place.
 struct MaxStep {
   double size = 1.0 / 127;
 };
@@ -36,9 +37,10 @@ using Stretch = std::vector<double>;
 
 /// Where a curve is sampled over [u_a, u_b]: stretches between its jumps, steps nearly as long as
 /// the policy allows. Knots of multiplicity >= degree (corners) are always among them. Errors:
-/// value_out_of_range (a policy's number is not positive or not finite), parameter_out_of_ range
+/// value_out_of_range (a policy's number is not positive or not finite), parameter_out_of_range
 /// (u_a or u_b outside the domain), empty_domain (u_a >= u_b), error_bound_missed (no step is short
-/// enough: the policy asks for less than rounding), too_many_points (over max_values).
+/// enough: values are rounded by more than MaxError asks for, or two neighbouring doubles of u are
+/// more than MaxStep apart), too_many_points (over max_values).
 Result<std::vector<Stretch>> sample_parameters(const NurbsCurve& curve, const Sampling& sampling,
                                                double u_a, double u_b, int max_values = 1 << 20);
 

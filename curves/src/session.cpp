@@ -114,7 +114,7 @@ void CurveSession::hand_over(const Stretch& stretch, const SessionCalls& calls) 
   if (calls.begin) calls.begin(stretch.front());
   for (const double u : stretch) {
     const Side side = u == stretch.back() ? Side::left : Side::right;
-    std::array<double, 2 * kMaxDim> value{};
+    std::array<double, 2UL * kMaxDim> value{};
     curve_->curve.derivatives(u, calls.slope ? 1 : 0, side, value);
     if (calls.value) calls.value(u, std::span(value).first(dim));
     if (calls.slope) calls.slope(u, std::span(value).subspan(dim, dim));

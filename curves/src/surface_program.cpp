@@ -112,8 +112,9 @@ SurfaceProgram::Slopes SurfaceProgram::slopes_at(double u, double v,
     const double* c = coefficients(along_u.cell, along_v.cell, row);
     double values[kMaxPieceDegree + 1] = {}, slopes[kMaxPieceDegree + 1] = {};
     for (int k = 0; k <= degree_u_; ++k) {
-      values[k] = horner(c + k * (degree_v_ + 1), degree_v_, along_v.local);
-      slopes[k] = slope_of(c + k * (degree_v_ + 1), degree_v_, along_v.local);
+      const std::size_t first = index_of(k) * index_of(degree_v_ + 1);
+      values[k] = horner(c + first, degree_v_, along_v.local);
+      slopes[k] = slope_of(c + first, degree_v_, along_v.local);
     }
     return Jet{horner(values, degree_u_, along_u.local), slope_of(values, degree_u_, along_u.local),
                horner(slopes, degree_u_, along_u.local)};

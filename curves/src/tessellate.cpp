@@ -173,7 +173,7 @@ Result<void> tessellate(const NurbsCurve& curve, const Sampling& sampling,
     if (calls.begin) calls.begin(stretch.front());
     for (const double u : stretch) {
       const Side side = u == stretch.back() ? Side::left : Side::right;
-      std::array<double, 2 * kMaxDim> value{};
+      std::array<double, 2UL * kMaxDim> value{};
       curve.derivatives(u, calls.slope ? 1 : 0, side, value);
       if (calls.value) calls.value(u, std::span(value).first(dim));
       if (calls.slope) calls.slope(u, std::span(value).subspan(dim, dim));

@@ -91,7 +91,7 @@ Result<void> bernstein(const std::string& folder) {
   draw_stack(picture, right, levels);
   if (auto ok = picture.save(folder + "/bernstein.svg"); !ok) return ok;
 
-  constexpr std::size_t kFrames = 8 * kRateHz;
+  constexpr std::size_t kFrames = 8 * kSecond;
   constexpr std::array kNotes = {48.0, 55.0, 64.0, 71.0};  // C3 G3 E4 B4
   Stereo sound(kFrames);
   for (int k = 0; k < 4; ++k) {

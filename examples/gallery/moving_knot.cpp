@@ -93,11 +93,12 @@ Result<void> moving_knot(const std::string& folder) {
   Picture picture(1080, 620, "B-spline basis functions while one knot moves",
                   "Degree 3, six functions that add up to 1. The orange knot moves, the grey one "
                   "stays at 0.6");
-  constexpr std::size_t kPass = 2 * kRateHz;
+  constexpr std::size_t kPass = 2 * kSecond;
   constexpr std::array kNotes = {48.0, 55.0, 60.0, 64.0, 67.0, 74.0};  // C3 G3 C4 E4 G4 D5
   std::array<std::vector<double>, kFunctions> levels;
   for (std::size_t i = 0; i < kMoving.size(); ++i) {
-    const double left = 40 + 345 * double(i % 3), top = Picture::kTop + 42 + 265 * double(i / 3);
+    const std::size_t column = i % 3, row = i / 3;
+    const double left = 40 + 345 * double(column), top = Picture::kTop + 42 + 265 * double(row);
     const auto all = functions(kMoving[i], kSteps);
     if (!all) return all.error();
     draw_panel(picture, Frame{left, top, left + 310, top + 185}, *all, kMoving[i]);

@@ -10,6 +10,7 @@
 namespace gallery {
 
 inline constexpr int kRateHz = 48000;
+inline constexpr std::size_t kSecond = kRateHz;  ///< in frames
 
 /// The gain at frame i of n: 10 ms to rise at the start and to fall at the end.
 double fade(std::size_t i, std::size_t n);

@@ -101,7 +101,7 @@ Result<void> string_art(const std::string& folder, int points) {
   const std::string name = folder + (points == 3 ? "/string_art_quadratic" : "/string_art_cubic");
   if (auto ok = drawn(*maps, numbers).save(name + ".svg"); !ok) return ok;
 
-  constexpr std::size_t kFrames = 6 * kRateHz;
+  constexpr std::size_t kFrames = 6 * kSecond;
   Stereo sound(kFrames);
   const std::vector<double> quiet(kFrames, 0.16), loud(kFrames, 0.34);
   sound.add_tone(notes(*maps, Target::free_1, kFrames), quiet, 0.1);

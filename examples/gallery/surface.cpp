@@ -48,7 +48,9 @@ std::string shade(double height, double rise_u) {
 }
 
 void draw_surface(Picture& picture, std::span<const double> heights) {
-  const auto height = [&](int i, int j) { return heights[std::size_t(j * (kAcross + 1) + i)]; };
+  const auto height = [&](int i, int j) {
+    return heights[std::size_t(j) * (kAcross + 1) + std::size_t(i)];
+  };
   const auto corner = [&](int i, int j) {
     return place(double(i) / kAcross, double(j) / kDeep, height(i, j));
   };
@@ -92,7 +94,7 @@ void draw_net(Picture& picture, double opacity) {
 Result<void> play(const curves::NurbsSurface& surface, const std::string& path) {
   const auto tables = dsp::WaveTables::create(surface);
   if (!tables) return tables.error();
-  constexpr std::size_t kFrames = 8 * kRateHz;
+  constexpr std::size_t kFrames = 8 * kSecond;
   Stereo sound(kFrames);
   const std::vector<base::Phase> steps(kFrames, base::phase_increment(110, kRateHz));
   std::vector<float> v(kFrames);
@@ -117,7 +119,7 @@ Result<void> surface(const std::string& folder) {
   if (!key) return key.error();
   maps.enable(*key);
 
-  std::vector<double> heights((kAcross + 1) * (kDeep + 1));
+  std::vector<double> heights(std::size_t{kAcross + 1} * (kDeep + 1));
   const curves::MapSet::Channel channel{Target::wave_position, 0, heights};
   maps.evaluate_mesh({0, 1, kAcross}, 0, kAcross + 1, {0, 1, kDeep}, 0, {&channel, 1});
   Picture picture(1000, 720, "A bi-cubic Bézier surface",

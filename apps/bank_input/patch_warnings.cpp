@@ -18,20 +18,40 @@ bool is_played(const engine::PatchSpec& patch, const std::string& curve) {
          curve == patch.crossfade_law || curve == patch.shaper_curve || curve == patch.glide_curve;
 }
 
+bool is_read(const engine::PatchSpec& patch, int free_number) {
+  constexpr auto kFree = engine::MapSource::free_number;
+  return std::any_of(patch.maps.begin(), patch.maps.end(), [&](const engine::MapSpec& map) {
+    return map.enabled && ((map.source == kFree && map.source_index == free_number) ||
+                           (map.source_v == kFree && map.source_v_index == free_number));
+  });
+}
+
+/// What the map does for nothing; empty where it is heard.
+std::string idle_work(const engine::PatchSpec& patch, const engine::MapSpec& map) {
+  if (!map.enabled) return {};
+  if (!map.target_curve.empty() && !is_played(patch, map.target_curve)) {
+    return "moves '" + map.target_curve + "', which nothing plays";
+  }
+  if (map.target == engine::MapTarget::free_number && !is_read(patch, map.target_index)) {
+    const auto& name = patch.free_numbers[static_cast<std::size_t>(map.target_index)];
+    return "moves 'free." + name + "', which no map reads (from = \"free." + name + "\")";
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::string> patch_warnings(const engine::PatchSpec& patch) {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < patch.maps.size(); ++i) {
-    const engine::MapSpec& map = patch.maps[i];
-    if (!map.enabled || map.target_curve.empty() || is_played(patch, map.target_curve)) continue;
+    const std::string work = idle_work(patch, patch.maps[i]);
+    if (work.empty()) continue;
     const engine::Place place = patch.place_of("maps." + std::to_string(i) + ".to");
     std::string where = patch.source_name + ":";
     if (place.line > 0) {
       where += std::to_string(place.line) + ":" + std::to_string(place.column) + ":";
     }
-    warnings.push_back(where + " warning: this map moves '" + map.target_curve +
-                       "', which nothing plays");
+    warnings.push_back(where + " warning: this map " + work);
   }
   return warnings;
 }

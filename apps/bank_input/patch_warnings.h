@@ -8,7 +8,8 @@
 
 namespace knotwave::bank_input {
 
-/// `file.toml:30:1: warning: ...`, one for each map that moves a curve which nothing plays.
+/// `file.toml:30:1: warning: ...`, one for each map that moves a curve which nothing plays, or
+/// a free number which no other map reads.
 std::vector<std::string> patch_warnings(const engine::PatchSpec& patch);
 
 }  // namespace knotwave::bank_input

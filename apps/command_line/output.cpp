@@ -12,12 +12,19 @@
 
 namespace knotwave::command_line {
 
+namespace {
+bool input_closed = false;
+}  // namespace
+
 void guard_standard_streams() {
   for (const int stream : {0, 1, 2}) {
-    // open() takes the lowest number that is free, and those below are not.
-    if (::fcntl(stream, F_GETFD) == -1) ::open("/dev/null", O_RDONLY);
+    if (::fcntl(stream, F_GETFD) != -1) continue;
+    if (stream == 0) input_closed = true;
+    ::open("/dev/null", O_RDONLY);  // takes the lowest number that is free: those below are not
   }
 }
+
+bool is_standard_input_closed() { return input_closed; }
 
 int print(std::string_view program, std::string_view text) {
   const auto written = base::write_to_standard_output(std::as_bytes(std::span(text)));

@@ -30,6 +30,12 @@ constexpr const char* kCheckExample = "Example:\n  knotwave-curve check examples
 constexpr const char* kInfoExample =
     "Example:\n  knotwave-curve info examples/curves/decay.toml#decay60";
 constexpr const char* kEvalExample =
+    "Prints a line for each place, with tabs between: u (of a surface u and v), the\n"
+    "coordinates, then those of each derivative, with all the digits a double has.\n"
+    "The first example prints u, the value and the slope:\n"
+    "  0     1                    -6.9070297066539474\n"
+    "  0.25  0.17782554727999572  -1.2283864077044784\n"
+    "  1     0.001                -0.0069004935640000001\n"
     "Examples:\n"
     "  knotwave-curve eval examples/curves/decay.toml#decay60 --at 0,0.25,1 --derivatives 1\n"
     "  knotwave-curve eval examples/curves/decay.toml#decay60 --grid 64\n"

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "bank_input/bank_input.h"
+#include "command_line/output.h"
 #include "demo.h"
 #include "event_feed.h"
 #include "render_job.h"
@@ -65,6 +66,11 @@ Result<RenderInput> read_files(const std::string& patch, const std::string& scor
 Result<RenderInput> read_input(const RenderOptions& options) {
   if (options.demo.empty()) {
     const bool is_piped = options.score == "-";
+    if (is_piped && command_line::is_standard_input_closed()) {
+      return fail(ErrorCode::io_failed,
+                  "the score is -, standard input, but that is closed: name a MIDI file, or put "
+                  "one in (knotwave-render PATCH - <SCORE.mid)");
+    }
     auto input = read_files(options.patch, is_piped ? kStandardInput : options.score,
                             is_piped ? "standard input" : options.score);
     if (!input) return input;

@@ -12,7 +12,7 @@ namespace {
 
 /// Longer words are not compared: the cost is the product of the lengths.
 constexpr std::size_t kMaxWord = 64;
-/// A shorter beginning says too little.
+/// A shorter beginning says too little, of either word.
 constexpr std::size_t kMinBeginning = 3;
 /// More words that begin so are a list, not a suggestion.
 constexpr std::size_t kMaxMeant = 3;
@@ -34,6 +34,24 @@ std::vector<std::string_view> completed(std::string_view word,
   std::copy_if(known.begin(), known.end(), std::back_inserter(found),
                [word](std::string_view candidate) { return candidate.starts_with(word); });
   return found;
+}
+
+/// The longest known word that begins `lower`.
+std::string_view longest_beginning(std::string_view lower,
+                                   std::span<const std::string_view> known) {
+  std::string_view longest;
+  for (const std::string_view candidate : known) {
+    if (candidate.size() < kMinBeginning || candidate.size() <= longest.size()) continue;
+    if (lower.starts_with(lower_case(candidate))) longest = candidate;
+  }
+  return longest;
+}
+
+/// A word as Synonym::theirs has it.
+std::string bare(std::string_view word) {
+  std::string text = lower_case(word);
+  std::erase_if(text, [](char c) { return c == '_' || c == '-' || c == ' '; });
+  return text;
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -73,7 +91,8 @@ std::string_view nearest_word(std::string_view word, std::span<const std::string
   }
   if (!best.empty()) return best;
   const auto longer_words = completed(word, known);
-  return longer_words.size() == 1 ? longer_words.front() : std::string_view{};
+  if (longer_words.size() == 1) return longer_words.front();
+  return longer_words.empty() ? longest_beginning(lower, known) : std::string_view{};
 }
 
 std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
@@ -86,6 +105,18 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
     text += std::string(meant[i]) + "'";
   }
   return text + "?";
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> known,
+                       std::span<const Synonym> synonyms) {
+  if (word.size() > kMaxWord) return {};
+  const std::string theirs = bare(word);
+  for (const Synonym& synonym : synonyms) {
+    if (synonym.theirs != theirs) continue;
+    if (std::find(known.begin(), known.end(), synonym.ours) == known.end()) continue;
+    return "; did you mean '" + std::string(synonym.ours) + "'?";
+  }
+  return suggestion(word, known);
 }
 
 }  // namespace knotwave::base

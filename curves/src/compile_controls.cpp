@@ -44,6 +44,28 @@ Result<void> check_rest(const CurveSpec& spec, const ControlRange& control,
 /// How near a moved knot may come to the next one, as a part of the domain.
 constexpr double kLeastGap = 1e-9;
 
+std::string least_text(double least) {
+  return "the least is " + base::number_text(least) + ", " + base::number_text(kLeastGap) +
+         " of the domain";
+}
+
+/// A knot that stands on another, or nearly so, cannot move between its neighbours.
+Result<void> check_alone(const CurveSpec& spec, int knot, double least, const std::string& name) {
+  const double here = spec.knots[at(knot)];
+  for (const int other : {knot - 1, knot + 1}) {
+    const double there = spec.knots[at(other)];
+    const double gap = other < knot ? here - there : there - here;
+    if (gap >= least) continue;
+    const std::string place = " is at " + base::number_text(there);
+    return fail(ErrorCode::value_out_of_range,
+                name + ": the curve has it at " + base::number_text(here) + ", and knot " +
+                    std::to_string(other) + place +
+                    (gap == 0 ? " too: a repeated knot cannot move"
+                              : ", " + base::number_text(gap) + " away; " + least_text(least)));
+  }
+  return {};
+}
+
 Result<void> check_knot(const CurveSpec& spec, const std::vector<ControlRange>& controls,
                         const ControlRange& control, const std::string& name) {
   const int outer = spec.periodic ? 0 : spec.degree;
@@ -62,9 +84,18 @@ Result<void> check_knot(const CurveSpec& spec, const std::vector<ControlRange>& 
     if (other.point == control.point + 1) above = std::min(above, other.low);
   }
   const double domain = spec.knots[spec.knots.size() - 1 - at(outer)] - spec.knots[at(outer)];
-  if (control.low <= control.high && control.low - below >= kLeastGap * domain &&
-      above - control.high >= kLeastGap * domain) {
+  const double least = kLeastGap * domain;
+  const double gap_below = control.low - below, gap_above = above - control.high;
+  if (control.low <= control.high && gap_below >= least && gap_above >= least) {
     return check_rest(spec, control, name);
+  }
+  if (auto alone = check_alone(spec, control.point, least, name); !alone) return alone;
+  if (control.low <= control.high && gap_below > 0 && gap_above > 0) {
+    const bool is_below = gap_below < least;
+    return fail(ErrorCode::value_out_of_range,
+                name + ": its range " + range_of(control) + " comes within " +
+                    base::number_text(is_below ? gap_below : gap_above) + " of its neighbour at " +
+                    base::number_text(is_below ? below : above) + "; " + least_text(least));
   }
   return fail(ErrorCode::value_out_of_range,
               name + ": its range " + range_of(control) +

@@ -30,13 +30,9 @@ double most_depth(MapTarget target) {
   }
 }
 
-std::string nearest(std::string_view word, const std::vector<std::string>& words) {
-  return base::suggestion(word, std::vector<std::string_view>(words.begin(), words.end()));
-}
-
 std::string why_no_source(const PatchSpec& patch, std::string_view word) {
   if (is_controller_word(word)) return "; controllers are cc0 to cc119";
-  const std::string suggestion = nearest(word, source_words(patch));
+  const std::string suggestion = source_suggestion(patch, word);
   if (!suggestion.empty() || !word.starts_with(kFreePrefix)) return suggestion;
   return "; a free number is there once a map has it as its target: to = \"" + std::string(word) +
          "\"";
@@ -229,7 +225,7 @@ void PatchReader::read_map_target(TableReader& reader, MapSpec& map) {
     return reader.fail_at(
         *at, ErrorCode::unknown_name,
         "there is no target '" + word + "' in this patch" +
-            (absent ? ", which has no [" + section + "]" : nearest(word, target_words(patch_))));
+            (absent ? ", which has no [" + section + "]" : target_suggestion(patch_, word)));
   }
   map.target = target->target;
   map.target_index = target->index;

@@ -20,6 +20,12 @@ Result<PatchSpec> read_patch(const base::Node& root, const std::string& source_n
 
 namespace {
 
+// What others call the built-in waves.
+constexpr base::Synonym kWaveSynonyms[] = {
+    {"sqr", "square"}, {"rect", "square"}, {"rectangle", "square"}, {"pulse", "square"},
+    {"ramp", "saw"},   {"cosine", "sine"}, {"tri", "triangle"},
+};
+
 // Every key of `table` and of the tables in it. Arrays of numbers are one place.
 void note_places(const base::Node& table, const std::string& path, Places& places) {
   for (const base::Node::Member& member : table.members) {
@@ -176,9 +182,11 @@ std::string PatchReader::curve_name(TableReader& reader, std::string_view key, R
     }
     return name;
   }
-  reader.fail_at(
-      *at, ErrorCode::unknown_name,
-      "there is no curve '" + name + "'" + base::suggestion(name, curve_words(role == Role::wave)));
+  const auto synonyms = role == Role::wave ? std::span<const base::Synonym>(kWaveSynonyms)
+                                           : std::span<const base::Synonym>();
+  reader.fail_at(*at, ErrorCode::unknown_name,
+                 "there is no curve '" + name + "'" +
+                     base::suggestion(name, curve_words(role == Role::wave), synonyms));
   return "";
 }
 

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <span>
+
+#include "knotwave/base/suggest.h"
 
 namespace knotwave::engine {
 namespace {
@@ -53,6 +56,27 @@ constexpr NamedTarget kNoiseTargets[] = {
 constexpr std::string_view kTargetWords[] = {"amp",      "gain",    "pitch",     "pan", "noise",
                                              "filter",   "shaper",  "crossfade", "lfo", "curve",
                                              "envelope", "surface", "free"};
+
+constexpr base::Synonym kSourceSynonyms[] = {
+    {"wheel", "mod"},
+    {"aftertouch", "pressure"},
+    {"channelaftertouch", "channel_pressure"},
+    {"polyaftertouch", "poly_pressure"},
+    {"pitchbend", "bend"},
+    {"pitchwheel", "bend"},
+    {"bender", "bend"},
+    {"note", "key"},
+    {"pitch", "key"},
+    {"keytrack", "key"},
+    {"slide", "timbre"},
+    {"noise", "random"},
+};
+constexpr base::Synonym kTargetSynonyms[] = {
+    {"volume", "amp"},         {"loudness", "amp"},       {"tremolo", "amp"},
+    {"tune", "pitch"},         {"frequency", "pitch"},    {"vibrato", "pitch"},
+    {"balance", "pan"},        {"panorama", "pan"},       {"cutoff", "filter.cutoff"},
+    {"q", "filter.resonance"}, {"drive", "shaper.drive"}, {"resonance", "filter.resonance"},
+};
 
 int controller_number(std::string_view word) {
   if (!word.starts_with("cc")) return -1;
@@ -112,6 +136,33 @@ int index_by_name(const std::vector<Item>& items, std::string_view name) {
   return found == items.end() ? -1 : static_cast<int>(found - items.begin());
 }
 
+// cc0..cc119 as "cc1".
+std::vector<std::string> source_words(const PatchSpec& patch) {
+  std::vector<std::string> words{"cc1"};
+  for (const NamedSource& source : kSources) words.emplace_back(source.word);
+  for (const EnvelopeUse& envelope : patch.envelopes) words.push_back(envelope.name);
+  for (const LfoUse& lfo : patch.lfos) words.push_back(lfo.name);
+  for (const std::string& name : patch.free_numbers)
+    words.push_back(std::string(kFreePrefix) + name);
+  return words;
+}
+
+std::vector<std::string> target_words(const PatchSpec& patch) {
+  std::vector<std::string> words;
+  for (TargetChoice& choice : target_choices(patch)) words.push_back(std::move(choice.word));
+  for (const curves::NurbsCurve& curve : patch.curves.curves) {
+    words.push_back("curve." + curve.name() + ".weight.0");
+    words.push_back("curve." + curve.name() + ".point.0");
+  }
+  return words;
+}
+
+std::string suggested(std::string_view word, const std::vector<std::string>& words,
+                      std::span<const base::Synonym> synonyms) {
+  return base::suggestion(word, std::vector<std::string_view>(words.begin(), words.end()),
+                          synonyms);
+}
+
 }  // namespace
 
 bool is_controller_word(std::string_view word) {
@@ -148,14 +199,8 @@ std::optional<SourceWord> find_source(const PatchSpec& patch, std::string_view w
   return std::nullopt;
 }
 
-std::vector<std::string> source_words(const PatchSpec& patch) {
-  std::vector<std::string> words{"cc1"};
-  for (const NamedSource& source : kSources) words.emplace_back(source.word);
-  for (const EnvelopeUse& envelope : patch.envelopes) words.push_back(envelope.name);
-  for (const LfoUse& lfo : patch.lfos) words.push_back(lfo.name);
-  for (const std::string& name : patch.free_numbers)
-    words.push_back(std::string(kFreePrefix) + name);
-  return words;
+std::string source_suggestion(const PatchSpec& patch, std::string_view word) {
+  return suggested(word, source_words(patch), kSourceSynonyms);
 }
 
 std::optional<TargetWord> find_target(const PatchSpec& patch, std::string_view word) {
@@ -165,14 +210,8 @@ std::optional<TargetWord> find_target(const PatchSpec& patch, std::string_view w
   return std::nullopt;
 }
 
-std::vector<std::string> target_words(const PatchSpec& patch) {
-  std::vector<std::string> words;
-  for (TargetChoice& choice : target_choices(patch)) words.push_back(std::move(choice.word));
-  for (const curves::NurbsCurve& curve : patch.curves.curves) {
-    words.push_back("curve." + curve.name() + ".weight.0");
-    words.push_back("curve." + curve.name() + ".point.0");
-  }
-  return words;
+std::string target_suggestion(const PatchSpec& patch, std::string_view word) {
+  return suggested(word, target_words(patch), kTargetSynonyms);
 }
 
 }  // namespace knotwave::engine

@@ -28,8 +28,10 @@ bool is_target_word(std::string_view word);
 
 /// The source `word` of the patch, or none.
 std::optional<SourceWord> find_source(const PatchSpec& patch, std::string_view word);
-/// Every source of the patch, for suggestions (cc0..cc119 as "cc1").
-std::vector<std::string> source_words(const PatchSpec& patch);
+/// `; did you mean 'mod'?` for a word that is no source of the patch, or empty. [control]
+std::string source_suggestion(const PatchSpec& patch, std::string_view word);
+/// The same for a word that is no target.
+std::string target_suggestion(const PatchSpec& patch, std::string_view word);
 
 /// A target that is no curve.
 struct TargetWord {
@@ -38,7 +40,5 @@ struct TargetWord {
 };
 /// The target `word` of the patch, or none; curves are left to the reader of maps.
 std::optional<TargetWord> find_target(const PatchSpec& patch, std::string_view word);
-/// Every such target of the patch, for suggestions.
-std::vector<std::string> target_words(const PatchSpec& patch);
 
 }  // namespace knotwave::engine

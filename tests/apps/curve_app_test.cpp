@@ -70,6 +70,21 @@ TEST_F(CurveApp, SaysItsVersionAndItsHelp) {
   }
 }
 
+TEST_F(CurveApp, TheHelpOfEvalShowsWhatItPrints) {
+  std::string help = run({"eval", "--help"}).out;
+  const auto same = [](char a, char b) { return a == ' ' && b == ' '; };
+  help.erase(std::unique(help.begin(), help.end(), same), help.end());
+  std::string printed = run({"eval", KNOTWAVE_SOURCE_DIR "/examples/curves/decay.toml#decay60",
+                             "--at", "0,0.25,1", "--derivatives", "1"})
+                            .out;
+  EXPECT_EQ(std::count(printed.begin(), printed.end(), '\n'), 3);
+  std::replace(printed.begin(), printed.end(), '\t', ' ');
+  std::istringstream lines(printed);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_THAT(help, HasSubstr(" " + line + "\n"));
+  EXPECT_THAT(help, HasSubstr("decay.toml#decay60 --at 0,0.25,1 --derivatives 1\n"));
+}
+
 TEST_F(CurveApp, ChecksEveryKindOfFileThatIsShipped) {
   std::vector<std::string> files = {"check"};
   for (const char* folder : {"curves", "patches", "banks"}) {

@@ -138,6 +138,13 @@ TEST_F(RenderFaults, NothingIsPrintedIntoTheFilesOfClosedStreams) {
     EXPECT_EQ(read("out.wav"), read("good.wav")) << closed;
     EXPECT_THAT(read("out.json"), testing::StartsWith("{")) << closed;
   }
+  const auto nothing = support::run_program(
+      {"/bin/sh", "-c", KNOTWAVE_BIN_DIR "/knotwave-render small.toml - -o out.wav <&-"}, options);
+  EXPECT_EQ(nothing.exit_code, 1);
+  EXPECT_EQ(
+      nothing.err,
+      "knotwave-render: error: the score is -, standard input, but that is closed: name a MIDI "
+      "file, or put one in (knotwave-render PATCH - <SCORE.mid)\n");
   EXPECT_EQ(shell("-o - --json samples.json >&-").exit_code, 1);
   EXPECT_FALSE(fs::exists(file("samples.json")) && read("samples.json").substr(0, 1) != "{");
 }

@@ -100,6 +100,23 @@ TEST_F(RenderProgram, AMapThatMovesACurveNothingPlaysIsTold) {
   EXPECT_THAT(busy.err, IsEmpty());
 }
 
+TEST_F(RenderProgram, AFreeNumberThatNothingReadsIsTold) {
+  const std::string patch = std::string(kSmallPatch) +
+                            "[[maps]]\nfrom = \"mod\"\nto = \"free.swell\"\n"
+                            "[[maps]]\nfrom = \"velocity\"\nto = \"free.swell\"\n";
+  const std::string words =
+      "warning: this map moves 'free.swell', which no map reads (from = \"free.swell\")\n";
+  write("idle.toml", patch);
+  EXPECT_EQ(run({"idle.toml", "small.mid", "--check"}).err,
+            "idle.toml:17:6: " + words + "idle.toml:20:6: " + words);
+  const std::string reader = "[[maps]]\nfrom = \"free.swell\"\nto = \"pitch\"\n";
+  write("off.toml", patch + reader + "enabled = false\n");
+  EXPECT_THAT(run({"off.toml", "small.mid", "--check"}).err, HasSubstr(words))
+      << "a map switched off";
+  write("read.toml", patch + reader);
+  EXPECT_THAT(run({"read.toml", "small.mid", "--check"}).err, IsEmpty());
+}
+
 TEST_F(RenderProgram, AConstantCurveAsAWaveIsSilence) {
   const std::string flat = "[curves.flat]\ndegree = 1\npoints = [0.5, 0.5]\n";
   std::string patch = kSmallPatch + flat;

@@ -37,6 +37,27 @@ TEST(Suggest, TheOnlyWordThatBeginsSoIsMeant) {
   EXPECT_EQ(nearest_word("rel", kLong), "") << "two words begin so";
 }
 
+TEST(Suggest, AWordThatBeginsWithAKnownOneMeansTheLongestSuch) {
+  constexpr std::array<std::string_view, 5> kWords = {"mod", "saw", "key", "key_octaves", "cc"};
+  EXPECT_EQ(nearest_word("modwheel", kWords), "mod");
+  EXPECT_EQ(nearest_word("Sawtooth", kWords), "saw");
+  EXPECT_EQ(nearest_word("key_octaves_high", kWords), "key_octaves");
+  EXPECT_EQ(nearest_word("ccontrol", kWords), "") << "two letters say too little";
+}
+
+TEST(Suggest, WhatOthersCallItIsMeantWhereItIsKnown) {
+  constexpr std::array<std::string_view, 3> kWords = {"bend", "square", "pitched"};
+  constexpr std::array<Synonym, 3> kSynonyms = {
+      {{"pitchbend", "bend"}, {"sqr", "square"}, {"wheel", "mod"}}};
+  EXPECT_EQ(suggestion("sqr", kWords, kSynonyms), "; did you mean 'square'?");
+  for (const char* word : {"pitchbend", "pitch_bend", "Pitch-Bend", "pitch bend"}) {
+    EXPECT_EQ(suggestion(word, kWords, kSynonyms), "; did you mean 'bend'?") << word;
+  }
+  EXPECT_EQ(suggestion("wheel", kWords, kSynonyms), "") << "there is no mod here";
+  EXPECT_EQ(suggestion("benf", kWords, kSynonyms), "; did you mean 'bend'?");
+  EXPECT_EQ(suggestion(std::string(100000, 'w'), kWords, kSynonyms), "");
+}
+
 TEST(Suggest, WhatIsTooFarIsNotSuggested) {
   EXPECT_EQ(nearest_word("sustain", kKeys), "");
   EXPECT_EQ(nearest_word("", kKeys), "");

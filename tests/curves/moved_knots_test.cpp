@@ -166,6 +166,26 @@ void expect_refused(const NurbsCurve& curve, std::vector<ControlRange> controls,
   EXPECT_NE(program.error().message.find(words), std::string::npos) << program.error().message;
 }
 
+TEST(MovedKnots, AGapBelowABillionthOfTheDomainIsToldToTheLastDigit) {
+  const auto range = ErrorCode::value_out_of_range;
+  const NurbsCurve curve = line({0, 1, 0, 1, 0}, 2);  // knots 3 and 4 at 1/3 and 2/3
+  expect_refused(curve, {{Kind::knot, 3, 0, 0x1p-31, 0.5}}, range,
+                 "its range 4.656612873077393e-10..0.5 comes within 4.656612873077393e-10 of its "
+                 "neighbour at 0; the least is 1e-09, 1e-09 of the domain");
+  expect_refused(
+      curve, {{Kind::knot, 4, 0, 0.5, 1 - 0x1p-31}}, range,
+      "0.5..0.9999999995343387 comes within 4.656612873077393e-10 of its neighbour at 1;");
+  CurveSpec near = curve.spec();
+  near.knots[3] = 0.5;
+  near.knots[4] = 0.5 + 0x1p-31;
+  expect_refused(made(near), {{Kind::knot, 3, 0, 0.4, 0.5}}, range,
+                 "the curve has it at 0.5, and knot 4 is at 0.5000000004656613, "
+                 "4.656612873077393e-10 away; the least is 1e-09");
+  expect_refused(made(near), {{Kind::knot, 4, 0, 0.5, 0.6}}, range,
+                 "the curve has it at 0.5000000004656613, and knot 3 is at 0.5, "
+                 "4.656612873077393e-10 away");
+}
+
 TEST(MovedKnots, RangesThatReachANeighbourAreRefusedWithTheNumbers) {
   const NurbsCurve curve = line({0, 1, 0, 1, 0}, 2);
   const auto range = ErrorCode::value_out_of_range;
@@ -181,7 +201,9 @@ TEST(MovedKnots, RangesThatReachANeighbourAreRefusedWithTheNumbers) {
                  ErrorCode::control_conflict, "control 1 (knot 3) and control 0");
   CurveSpec twice = curve.spec();
   twice.knots[3] = twice.knots[4] = 0.5;
-  expect_refused(made(twice), {{Kind::knot, 3, 0, 0.4, 0.6}}, range, "as near as 0 and 0.5");
+  expect_refused(
+      made(twice), {{Kind::knot, 3, 0, 0.4, 0.6}}, range,
+      "(knot 3): the curve has it at 0.5, and knot 4 is at 0.5 too: a repeated knot cannot move");
   CompileOptions options;
   options.controls = {{Kind::knot, 3, 0, 0.1, 0.5}};
   const auto polynomial = compile_polynomial(curve, options);

@@ -22,12 +22,13 @@ struct Note {
   int channel = 1;
 };
 
-/// In `folder`; the path.
-inline std::string notes_file(const support::ScratchFolder& folder,
-                              const std::vector<Note>& notes) {
+/// In `folder`, with more events among them; the path.
+inline std::string notes_file(const support::ScratchFolder& folder, const std::vector<Note>& notes,
+                              const std::vector<io::SongEvent>& more = {}) {
   constexpr double kTicks = 480;
   io::Song song;
   song.track_count = 1;
+  song.events.assign(more.begin(), more.end());
   for (const Note& note : notes) {
     const auto key = static_cast<std::uint8_t>(note.key);
     const auto velocity = static_cast<std::uint8_t>(note.velocity);

@@ -205,6 +205,45 @@ TEST_F(CurveExchange, ADrawnLineFillsTheUnitSquareWhenAsked) {
               ElementsAre(0, 0, 0, 0.8, 0.25, 1, 1, 1));
 }
 
+// From Inkscape to the ear: a line drawn on a page 200 wide is the loudness of a note over 2 s.
+TEST_F(CurveExchange, ADrawnLinePlays) {
+  const std::string drawing = write("page.svg",
+                                    "<svg><path id='rise' d='M 20,140 C 20,40 120,140 220,20'/>"
+                                    "</svg>");
+  const std::string curve = folder_.file("rise.toml"), sound = folder_.file("rise.wav");
+  ASSERT_EQ(run({"import", drawing, "--unit-square", "-o", curve}).exit_code, 0);
+  const std::string patch = write("patch.toml",
+                                  "format = 1\nkind = 'patch'\ngain_db = 6\n"
+                                  "[curves.rise]\ncurve_file = 'rise.toml'\n"
+                                  "[oscillators.a]\nwave = 'sine'\n"
+                                  "[envelopes.amp]\ncurve = 'rise'\nseconds = 2\n");
+  const ProgramRun played = support::run_program(
+      {"knotwave-render", patch, KNOTWAVE_SOURCE_DIR "/examples/musicians/one-note.mid", "-o",
+       sound, "--bits", "32f"});
+  ASSERT_EQ(played.exit_code, 0) << played.err;
+  const auto read = *io::read_sound(sound);
+  const auto rms = [&](double at_s) {  // of eight periods of 220 Hz, of the left channel
+    const int count = 48000 * 4 / 110, first = int(at_s * 48000) - count / 2;
+    double sum = 0;
+    for (int i = first; i < first + count; ++i) {
+      sum += double(read.samples[std::size_t(2 * i)]) * read.samples[std::size_t(2 * i)];
+    }
+    return std::sqrt(sum / count);
+  };
+  const auto rise = curves::read_curves(curve)->curves.front();
+  const auto drawn_at = [&](double x) {
+    double low = 0, high = 1, place[2];
+    for (int i = 0; i < 60; ++i) {
+      rise.evaluate((low + high) / 2, place);
+      (place[0] < x ? low : high) = (low + high) / 2;
+    }
+    return place[1];
+  };
+  for (const double x : {0.1, 0.25, 0.5, 0.75, 0.9}) {
+    EXPECT_NEAR(rms(2 * x) / rms(1.8), drawn_at(x) / drawn_at(0.9), 0.002) << x;
+  }
+}
+
 TEST_F(CurveExchange, WhatIsExportedIsImportedWithinTheErrorSaid) {
   const std::string arc = KNOTWAVE_SOURCE_DIR "/examples/curves/arc.toml#arc";
   const auto whole =

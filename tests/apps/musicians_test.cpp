@@ -155,6 +155,53 @@ TEST_F(NurbsForMusicians, EveryPictureIsWhatItsCommandDraws) {
   EXPECT_EQ(pictures, 10);
 }
 
+TEST_F(NurbsForMusicians, PicturesOfTheGalleryAreWhatItDraws) {
+  ASSERT_THAT(commands(), HasSubstr("\ngallery out/gallery\n"));
+  ASSERT_EQ(run("gallery out/gallery").exit_code, 0);
+  int pictures = 0;
+  for (const auto& entry : fs::directory_iterator(KNOTWAVE_SOURCE_DIR "/docs/pictures/gallery")) {
+    const std::string name = entry.path().filename().string();
+    says("](pictures/gallery/" + name + ")");
+    const auto drawn = base::read_file(folder_.file("out/gallery/" + name), 1 << 24);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+    EXPECT_TRUE(*drawn == *base::read_file(entry.path().string(), 1 << 24))
+        << name << ": tools/make_musician_pictures.py draws it anew";
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 4);
+  const std::regex shown("]\\(pictures/[^)]*\\)");
+  EXPECT_EQ(std::distance(std::sregex_iterator(text_.begin(), text_.end(), shown), {}), 14);
+}
+
+// On either side the string's end and the curve: where they sing the same note it is the only one.
+TEST_F(NurbsForMusicians, TheCurveOfStringsLeavesWithTheLeftEndAndArrivesWithTheRight) {
+  ASSERT_EQ(run("gallery out/gallery").exit_code, 0);
+  const auto read = *io::read_sound(folder_.file("out/gallery/string_art_quadratic.wav"));
+  constexpr int kCount = 8192;
+  const auto share_db = [&](int channel, double at_s, double low_hz, double high_hz) {
+    std::vector<double> part;
+    const auto first = std::int64_t(at_s * read.rate_hz) - kCount / 2;
+    for (int i = 0; i < kCount; ++i) {
+      part.push_back(double(read.samples[std::size_t(2 * (first + i) + channel)]) *
+                     (1 - std::cos(2 * std::numbers::pi * i / kCount)));
+    }
+    const auto lines = support::line_spectrum(std::span<const double>(part));
+    double inside = 0, all = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const double hz = double(i) * read.rate_hz / kCount, power = std::norm(lines[i]);
+      all += power;
+      if (hz >= low_hz && hz <= high_hz) inside += power;
+    }
+    return 10 * std::log10(inside / all);
+  };
+  const double end_s = double(read.frames) / read.rate_hz - 0.15;
+  EXPECT_GT(share_db(0, 0.15, 95, 140), -1) << "both on the left begin at 110 Hz";
+  EXPECT_GT(share_db(1, end_s, 110, 150), -1) << "both on the right end at 130 Hz";
+  EXPECT_LT(share_db(1, 0.15, 95, 140), -1) << "the right end begins two octaves above";
+  EXPECT_LT(share_db(0, end_s, 110, 150), -1) << "the left end is up there now";
+  says("It leaves with the left one and arrives with the right one.");
+}
+
 TEST_F(NurbsForMusicians, EveryPatchOfTheFolderIsPlayed) {
   for (const auto& entry : fs::directory_iterator(KNOTWAVE_SOURCE_DIR "/examples/musicians")) {
     says("examples/musicians/" + entry.path().filename().string());

@@ -19,7 +19,10 @@ struct Knot {
   int period = 0;
   double at = 0;
 
-  friend constexpr auto operator<=>(const Knot&, const Knot&) = default;
+  friend constexpr bool operator==(const Knot&, const Knot&) = default;
+  friend constexpr std::partial_ordering operator<=>(const Knot& a, const Knot& b) {
+    return a.period != b.period ? std::partial_ordering(a.period <=> b.period) : a.at <=> b.at;
+  }
 };
 
 /// Where a curve is defined, and what a parameter outside of it means.

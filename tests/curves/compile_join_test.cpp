@@ -25,6 +25,16 @@ double joined(const CurveProgram& program, const JoinProgram& join,
   return program.at_u(u) + deltas.dp0 * join.basis.at_u(u, 0) + deltas.dp1 * join.basis.at_u(u, 1);
 }
 
+/// The joined curve is `moved`, a function on 0..1.
+void expect_is(const CurveProgram& program, const JoinProgram& join,
+               const JoinProgram::Deltas& deltas, const NurbsCurve& moved, double tolerance) {
+  for (int i = 0; i <= 100; ++i) {
+    double y;
+    moved.evaluate(i / 100.0, {&y, 1});
+    EXPECT_NEAR(joined(program, join, deltas, i / 100.0), y, tolerance) << i;
+  }
+}
+
 TEST(CompileJoin, BeginsWithTheValueAndSlopeAskedAndLeavesTheTailAlone) {
   const std::uint64_t seed = support::test_seed();
   int limited = 0, free = 0;
@@ -111,11 +121,7 @@ TEST(CompileJoin, IsTheCurveWithItsFirstTwoPointsMoved) {
   spec.points[0] += deltas.dp0;
   spec.points[1] += deltas.dp1;
   const NurbsCurve moved = made(std::move(spec));
-  for (int i = 0; i <= 100; ++i) {
-    double y;
-    moved.evaluate(i / 100.0, {&y, 1});
-    EXPECT_NEAR(joined(*program, *join, deltas, i / 100.0), y, 1e-14);
-  }
+  expect_is(*program, *join, deltas, moved, 1e-14);
 }
 
 TEST(CompileJoin, LaterPointsFollowTheFirstByTheirShareAndStayInTheHull) {
@@ -134,11 +140,7 @@ TEST(CompileJoin, LaterPointsFollowTheFirstByTheirShareAndStayInTheHull) {
       EXPECT_LE(spec.points[i], 1 + 1e-15);
     }
     const NurbsCurve moved = made(std::move(spec));
-    for (int i = 0; i <= 100; ++i) {
-      double y;
-      moved.evaluate(i / 100.0, {&y, 1});
-      EXPECT_NEAR(joined(*program, *join, deltas, i / 100.0), y, 1e-13);
-    }
+    expect_is(*program, *join, deltas, moved, 1e-13);
   }
 }
 
@@ -150,11 +152,7 @@ TEST(CompileJoin, ASecondPointOfAQuadraticFollowsTheFirst) {
   EXPECT_FALSE(join->moves_p1);
   EXPECT_FALSE(join->is_vertical);
   const NurbsCurve moved = line({0.6, 0.7, 1}, 2);
-  for (int i = 0; i <= 100; ++i) {
-    double y;
-    moved.evaluate(i / 100.0, {&y, 1});
-    EXPECT_NEAR(joined(*program, *join, join->join_c0(0.6), i / 100.0), y, 1e-15);
-  }
+  expect_is(*program, *join, join->join_c0(0.6), moved, 1e-15);
 }
 
 TEST(CompileJoin, NoPointFollowsWhereControllersMoveSome) {

@@ -52,11 +52,7 @@ Sound sound_of(const std::string& maps, std::size_t block = 256) {
 }
 
 std::unique_ptr<const PatchProgram> program_of(const std::string& maps) {
-  auto patch = parse_patch(patch_with(maps), "p.toml");
-  EXPECT_TRUE(patch) << (patch ? "" : patch.error().to_string());
-  auto program = PatchProgram::create(*patch);
-  EXPECT_TRUE(program) << (program ? "" : program.error().to_string());
-  return *std::move(program);
+  return program_from(patch_with(maps));
 }
 
 std::string read_error(const std::string& maps) {

@@ -53,11 +53,7 @@ Sound sound_of(const std::string& maps, std::size_t block = 256) {
 double pitch_of(const Sound& sound) { return frequency_hz(sound.left, 4000, 24000); }
 
 std::unique_ptr<const PatchProgram> program_of(const std::string& maps) {
-  auto patch = parse_patch(patch_with(maps), "scene.toml");
-  EXPECT_TRUE(patch) << (patch ? "" : patch.error().to_string());
-  auto program = PatchProgram::create(*patch);
-  EXPECT_TRUE(program) << (program ? "" : program.error().to_string());
-  return *std::move(program);
+  return program_from(patch_with(maps));
 }
 
 TEST(MapOverride, ARationalMapTakesThePlaceOfPlainOnesOntoTheSameTarget) {

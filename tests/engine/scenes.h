@@ -13,6 +13,7 @@
 
 #include "knotwave/engine/bank.h"
 #include "knotwave/engine/engine.h"
+#include "knotwave/engine/patch_program.h"
 
 #include "scene_patches.h"
 
@@ -49,6 +50,15 @@ inline std::unique_ptr<const BankProgram> bank_from(std::string_view patch_text)
   auto bank = BankProgram::create(bank_of(*std::move(patch)));
   EXPECT_TRUE(bank) << (bank ? "" : bank.error().to_string());
   return bank ? *std::move(bank) : nullptr;
+}
+
+inline std::unique_ptr<const PatchProgram> program_from(std::string_view patch_text) {
+  auto patch = parse_patch(patch_text, "scene.toml");
+  EXPECT_TRUE(patch) << (patch ? "" : patch.error().to_string());
+  if (!patch) return nullptr;
+  auto program = PatchProgram::create(*patch);
+  EXPECT_TRUE(program) << (program ? "" : program.error().to_string());
+  return program ? *std::move(program) : nullptr;
 }
 
 inline std::unique_ptr<Engine> engine_for(const BankProgram& bank, EngineConfig config = {}) {

@@ -307,19 +307,6 @@ high = 4
 
 TEST(Sound, TempoSetsAnLfoInBeats) {
   constexpr std::string_view kBeats = R"(
-format = 1
-kind = "patch"
-[curves.gate]
-degree = 2
-points = [0, 1, 1, 1, 0, 0]
-knots = [0,0,0, 0.01,0.01, 0.035, 0.06,0.06,0.06]
-[oscillators.a]
-wave = "sine"
-[envelopes.amp]
-curve = "gate"
-seconds = 0.06
-sustain_at = 0.01
-release_at = 0.01
 [lfos.pulse]
 curve = "square"
 beats = 1
@@ -328,7 +315,7 @@ from = "pulse"
 to = "amp"
 depth = 20
 )";
-  const auto bank = bank_from(kBeats);
+  const auto bank = bank_from(std::string(kPlain) + std::string(kBeats));
   const auto engine = engine_for(*bank);
   Event tempo = of_kind(0, Event::Kind::tempo);
   tempo.microseconds_per_quarter = 1000000;

@@ -23,6 +23,7 @@ using Curve = std::unique_ptr<kw_curve, Freed<kw_curve_free>>;
 using Surface = std::unique_ptr<kw_surface, Freed<kw_surface_free>>;
 using Program = std::unique_ptr<kw_program, Freed<kw_program_free>>;
 using Set = std::unique_ptr<kw_curve_set, Freed<kw_curve_set_free>>;
+using Maps = std::unique_ptr<kw_map_set, Freed<kw_map_set_free>>;
 using Bezier = std::unique_ptr<kw_bezier, Freed<kw_bezier_free>>;
 using Fault = std::unique_ptr<kw_error, Freed<kw_error_free>>;
 using Text = std::unique_ptr<char, Freed<kw_text_free>>;

@@ -110,7 +110,19 @@ kw_status make_curve(std::initializer_list<Needed> needed, kw_curve** out, kw_er
   });
 }
 
-/// The same for results that say more of the curve: `tell` gets them once *out is made.
+/// The same for a surface.
+template <class Work>
+kw_status make_surface(std::initializer_list<Needed> needed, kw_surface** out, kw_error** error,
+                       Work&& work) noexcept {
+  if (out != nullptr) *out = nullptr;
+  return run(needed, error, [&]() -> kw_status {
+    if (out == nullptr) return report(error, KW_NULL_ARGUMENT, "out");
+    return give(work(), error,
+                [&](curves::NurbsSurface&& surface) { *out = new kw_surface{std::move(surface)}; });
+  });
+}
+
+/// A call that makes one curve by results that say more of it: `tell` gets them once *out is made.
 template <class Work, class Tell>
 kw_status make_curve(std::initializer_list<Needed> needed, kw_curve** out, kw_error** error,
                      Work&& work, Tell&& tell) noexcept {

@@ -10,17 +10,6 @@ namespace {
 
 constexpr int32_t kMaxOrder = 100;
 
-template <class Work>
-kw_status make_surface(std::initializer_list<Needed> needed, kw_surface** out, kw_error** error,
-                       Work&& work) noexcept {
-  if (out != nullptr) *out = nullptr;
-  return run(needed, error, [&]() -> kw_status {
-    if (out == nullptr) return report(error, KW_NULL_ARGUMENT, "out");
-    return give(work(), error,
-                [&](NurbsSurface&& surface) { *out = new kw_surface{std::move(surface)}; });
-  });
-}
-
 Result<NurbsSurface> surface_of(const kw_surface_spec& spec) {
   if (spec.struct_size != sizeof(kw_surface_spec)) {
     return fail(ErrorCode::unsupported_version, "begin the spec with KW_SURFACE_SPEC_INIT");

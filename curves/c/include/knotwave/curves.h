@@ -5,7 +5,7 @@
 //
 // Rules, the same for every function:
 // - Handles (kw_curve and so on) are opaque and immutable, but for a kw_curve_set that is being
-//   filled. Any number of threads may read one at once. There are no globals.
+//   filled and for a kw_map_set. Any number of threads may read one at once. There are no globals.
 // - Who gets a handle, text or kw_doubles through an argument called `out` owns it, and gives it
 //   back to the function whose name ends in _free. Each has its own memory: curves made from a
 //   curve outlive it. What a function returns as a `const` pointer is borrowed: it lives as long as
@@ -30,7 +30,9 @@
 #include "knotwave/c/curve_set.h"
 #include "knotwave/c/edit.h"
 #include "knotwave/c/fit.h"
+#include "knotwave/c/map.h"
 #include "knotwave/c/program.h"
 #include "knotwave/c/shapes.h"
 #include "knotwave/c/status.h"
 #include "knotwave/c/surface.h"
+#include "knotwave/c/tessellate.h"

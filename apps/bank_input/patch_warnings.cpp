@@ -51,7 +51,8 @@ std::vector<std::string> patch_warnings(const engine::PatchSpec& patch) {
     if (place.line > 0) {
       where += std::to_string(place.line) + ":" + std::to_string(place.column) + ":";
     }
-    warnings.push_back(where + " warning: this map " + work);
+    where += " warning: this map ";
+    warnings.push_back(where + work);
   }
   return warnings;
 }

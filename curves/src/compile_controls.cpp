@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "knotwave/base/document.h"
 
@@ -56,12 +57,11 @@ Result<void> check_alone(const CurveSpec& spec, int knot, double least, const st
     const double there = spec.knots[at(other)];
     const double gap = other < knot ? here - there : there - here;
     if (gap >= least) continue;
-    const std::string place = " is at " + base::number_text(there);
-    return fail(ErrorCode::value_out_of_range,
-                name + ": the curve has it at " + base::number_text(here) + ", and knot " +
-                    std::to_string(other) + place +
-                    (gap == 0 ? " too: a repeated knot cannot move"
-                              : ", " + base::number_text(gap) + " away; " + least_text(least)));
+    std::string text = name + ": the curve has it at " + base::number_text(here) + ", and knot ";
+    text += std::to_string(other) + " is at " + base::number_text(there);
+    text += gap == 0 ? " too: a repeated knot cannot move"
+                     : ", " + base::number_text(gap) + " away; " + least_text(least);
+    return fail(ErrorCode::value_out_of_range, std::move(text));
   }
   return {};
 }

@@ -18,10 +18,9 @@ double most_depth(MapTarget target) {
     case MapTarget::amp:
     case MapTarget::level:
     case MapTarget::drive:
-      return 240;  // dB
     case MapTarget::pitch:
     case MapTarget::cutoff:
-      return 240;  // semitones
+      return 240;  // dB, semitones
     case MapTarget::lfo_rate:
     case MapTarget::envelope_time:
       return 20;  // octaves
@@ -32,7 +31,7 @@ double most_depth(MapTarget target) {
 
 std::string why_no_source(const PatchSpec& patch, std::string_view word) {
   if (is_controller_word(word)) return "; controllers are cc0 to cc119";
-  const std::string suggestion = source_suggestion(patch, word);
+  std::string suggestion = source_suggestion(patch, word);
   if (!suggestion.empty() || !word.starts_with(kFreePrefix)) return suggestion;
   return "; a free number is there once a map has it as its target: to = \"" + std::string(word) +
          "\"";

@@ -43,7 +43,7 @@ inline std::string notes_file(const support::ScratchFolder& folder, const std::v
   std::stable_sort(song.events.begin(), song.events.end(),
                    [](const auto& a, const auto& b) { return a.tick < b.tick; });
   const auto bytes = io::write_midi(song);
-  const std::string path = folder.file("notes.mid");
+  std::string path = folder.file("notes.mid");
   EXPECT_TRUE(base::write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
   return path;
 }

@@ -80,6 +80,7 @@ void add_analyses(py::module_& module, py::class_<curves::NurbsCurve>& curve);
 void add_combinations(py::module_& module);
 void add_surface(py::module_& module);
 void add_program(py::module_& module);
+void add_maps(py::module_& module);
 void add_files(py::module_& module);
 void add_shapes(py::module_& module);
 void add_fits(py::module_& module);

@@ -124,6 +124,7 @@ PYBIND11_MODULE(_knotwave, module) {
   add_combinations(module);
   add_surface(module);
   add_program(module);
+  add_maps(module);
   add_files(module);
   add_shapes(module);
   add_fits(module);

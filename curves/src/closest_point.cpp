@@ -7,6 +7,7 @@
 #include "knotwave/curves/analysis.h"
 
 #include "coordinate_pieces.h"
+#include "length.h"
 
 namespace knotwave::curves {
 namespace {
@@ -15,12 +16,6 @@ using base::number_text;
 
 /// A span seen from the point: its coordinates are offsets from there.
 using Offsets = std::vector<CoordinatePiece>;  // [dim]
-
-double length_of(std::span<const double> x) {
-  double square = 0;
-  for (const double c : x) square += c * c;
-  return std::sqrt(square);
-}
 
 double distance_at(const Offsets& span, double t) {
   std::array<double, kMaxDim> offset{};

@@ -103,11 +103,10 @@ Result<void> check_widths(const NurbsCurve& curve) {
   const auto knots = curve.knots();
   for (int i = curve.degree(); i < curve.point_count(); ++i) {
     const double width = knots[at(i) + 1] - knots[at(i)];
-    if (width == 0 || (width > 1e-280 && width < 1e280)) continue;
-    return fail(ErrorCode::value_out_of_range, "curve '" + curve.name() + "': knots " +
-                                                   base::number_text(knots[at(i)]) + " and " +
-                                                   base::number_text(knots[at(i) + 1]) +
-                                                   " are too close or too far apart to play");
+    if (width == 0 || width > 1e-280) continue;
+    return fail(ErrorCode::value_out_of_range,
+                "curve '" + curve.name() + "': knots " + base::number_text(knots[at(i)]) + " and " +
+                    base::number_text(knots[at(i) + 1]) + " are too close to play");
   }
   return {};
 }

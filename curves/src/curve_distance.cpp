@@ -7,6 +7,8 @@
 
 #include "knotwave/base/index.h"
 
+#include "length.h"
+
 namespace knotwave::curves {
 namespace {
 
@@ -19,16 +21,10 @@ struct Pair {
   int halvings = 0;
 };
 
-double length_of(const double* x, int dim) {
-  double square = 0;
-  for (int c = 0; c < dim; ++c) square += x[c] * x[c];
-  return std::sqrt(square);
-}
-
 double distance_at(const HomogeneousPoint& a, const HomogeneousPoint& b, int dim) {
   double apart[kMaxDim];
   for (std::size_t c = 0; c < index_of(dim); ++c) apart[c] = (a.x[c] / a.w - b.x[c] / b.w).hi;
-  return length_of(apart, dim);
+  return length_of({apart, index_of(dim)});
 }
 
 // How far any of b's points is from `middle`.
@@ -57,8 +53,9 @@ double hull_bound(const Pair& pair, int dim) {
         const DoubleDouble o = middle.x[c] / middle.w;
         bracket[c] = (a.x[c] - b.x[c] - more_weight * o).hi;
       }
-      bound =
-          std::max(bound, (length_of(bracket, dim) + std::abs(more_weight.hi) * radius) / a.w.hi);
+      bound = std::max(
+          bound,
+          (length_of({bracket, index_of(dim)}) + std::abs(more_weight.hi) * radius) / a.w.hi);
     }
   }
   return bound;

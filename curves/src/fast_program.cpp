@@ -183,7 +183,7 @@ void FastProgram::add_piece(int piece, double max_error) {
         row.low - row.error > ranges_[at(2 * c)] && row.high + row.error < ranges_[at(2 * c + 1)];
     // The hull's ends, where a sample is clamped to them, are rounded.
     const double error = row.error + (stays_inside ? 0 : 0x1p-24 * largest(c));
-    if (!(error <= max_error)) continue;
+    if (!(error <= max_error) || !std::isfinite(error)) continue;
     forms_[at(piece * dim + c)] = stays_inside ? Form::fast : Form::clamped;
     max_error_[at(c)] = std::max(max_error_[at(c)], error);
   }

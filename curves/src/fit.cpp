@@ -10,6 +10,7 @@
 
 #include "chords.h"
 #include "fitted_curve.h"
+#include "length.h"
 #include "spline_fit.h"
 
 namespace knotwave::curves {
@@ -75,14 +76,10 @@ double largest_miss(const NurbsCurve& curve, const Samples& samples) {
   const std::size_t size = index_of(curve.dim());
   double largest = 0;
   for (std::size_t i = 0; i < samples.at.size(); ++i) {
-    double at[kMaxDim];
-    curve.evaluate(samples.at[i], std::span(at).first(size));
-    double square = 0;
-    for (std::size_t c = 0; c < size; ++c) {
-      const double apart = at[c] - samples.values[i * size + c];
-      square += apart * apart;
-    }
-    largest = std::max(largest, std::sqrt(square));
+    double apart[kMaxDim];
+    curve.evaluate(samples.at[i], std::span(apart).first(size));
+    for (std::size_t c = 0; c < size; ++c) apart[c] -= samples.values[i * size + c];
+    largest = std::max(largest, length_of({apart, size}));
   }
   return largest;
 }
@@ -103,9 +100,7 @@ FittedCurve fitted_curve(NurbsCurve curve, std::span<const double> values, doubl
   double largest = 0;
   const std::size_t size = index_of(curve.dim());
   for (std::size_t i = 0; i < values.size(); i += size) {
-    double square = 0;
-    for (std::size_t c = 0; c < size; ++c) square += values[i + c] * values[i + c];
-    largest = std::max(largest, std::sqrt(square));
+    largest = std::max(largest, length_of(values.subspan(i, size)));
   }
   const double db = max_error > 0 && largest > 0 ? base::gain_to_db(max_error / largest) : -1000;
   return {std::move(curve), max_error, db};

@@ -15,6 +15,19 @@ namespace {
 
 using base::index_of;
 
+// Where the lower halves of double-doubles have no bits left, sums may pass their greatest term.
+constexpr double kTiny = 1e-280;
+
+// `value` no further out than the coordinate of `points` [n*dim] that begins them.
+double within(double value, std::span<const double> points, int dim) {
+  double low = points.front(), high = low;
+  for (std::size_t i = 0; i < points.size(); i += index_of(dim)) {
+    low = std::min(low, points[i]);
+    high = std::max(high, points[i]);
+  }
+  return std::clamp(value, low, high);
+}
+
 }  // namespace
 
 Result<NurbsCurve> NurbsCurve::create(CurveSpec spec) {
@@ -67,12 +80,17 @@ void NurbsCurve::evaluate(double u, Side side, std::span<double> out) const noex
     if (rational_) share[r] = share[r] * weights_[index_of(span - degree_ + r)];
     total += share[r];
   }
+  const std::size_t first = index_of((span - degree_) * dim_), all = index_of((degree_ + 1) * dim_);
   for (int c = 0; c < dim_; ++c) {
     DoubleDouble sum = 0.0;
     for (int r = 0; r <= degree_; ++r) {
       sum += share[r] * points_[index_of((span - degree_ + r) * dim_ + c)];
     }
-    out[index_of(c)] = rational_ ? (sum / total).hi : sum.hi;
+    double value = rational_ ? (sum / total).hi : sum.hi;
+    if (std::abs(value) < kTiny) {
+      value = within(value, points().subspan(first + index_of(c), all - index_of(c)), dim_);
+    }
+    out[index_of(c)] = value;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "knotwave/base/index.h"
+#include "knotwave/base/rt.h"
 
 #include "span_basis.h"
 #include "spec_checks.h"
@@ -154,6 +155,7 @@ void NurbsSurface::derivatives(double u, double v, int order,
 
 void NurbsSurface::derivatives(double u, Side side_u, double v, Side side_v, int order,
                                std::span<double> out) const noexcept {
+  KNOTWAVE_ASSERT(order >= 0 && order <= kMaxDegree);
   std::fill_n(out.begin(), index_of((order + 1) * (order + 1) * dim_), 0.0);
   evaluate(u, v, out.first(index_of(dim_)));
   const WeightedPartials weighted(*this, {sequence_u(*this), u, side_u},

@@ -6,6 +6,7 @@
 
 #include "knotwave/base/gauss_legendre.h"
 
+#include "length.h"
 #include "span_polynomial.h"
 
 namespace knotwave::curves {
@@ -35,12 +36,6 @@ double least(const Bernstein& a) {
   return std::min_element(a.begin(), a.end(),
                           [](DoubleDouble x, DoubleDouble y) { return x.hi < y.hi; })
       ->hi;
-}
-
-double length_of(std::span<const double> coordinates) {
-  double square = 0;
-  for (const double x : coordinates) square += x * x;
-  return std::sqrt(square);
 }
 
 }  // namespace

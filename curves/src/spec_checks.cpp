@@ -41,6 +41,13 @@ Fault find_order_fault(const KnotRules& rules) {
                    name + " is below knot " + std::to_string(i - 1) + " (" +
                        number_text(rules.knots[index_of(i - 1)]) + ")");
     }
+    if (i > 0 && knot > rules.knots[index_of(i - 1)] &&
+        knot - rules.knots[index_of(i - 1)] < kMinKnotStep) {
+      return fault(rules.knots_part, i, ErrorCode::value_out_of_range, rules.what,
+                   name + " is above knot " + std::to_string(i - 1) + " (" +
+                       number_text(rules.knots[index_of(i - 1)]) + ") by less than " +
+                       number_text(kMinKnotStep));
+    }
   }
   return std::nullopt;
 }

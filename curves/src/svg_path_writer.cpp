@@ -7,6 +7,7 @@
 #include "knotwave/curves/svg_path.h"
 
 #include "curve_distance.h"
+#include "length.h"
 
 namespace knotwave::curves {
 namespace {
@@ -28,17 +29,16 @@ double distance_from_polynomial(const Points& piece, const Points& near, int dim
   double least = piece.front().w.hi, largest = 0;
   for (const HomogeneousPoint& point : piece) least = std::min(least, point.w.hi);
   for (std::size_t k = 0; k <= p + q; ++k) {
-    double square = 0;
+    double apart[kMaxDim];
     for (std::size_t c = 0; c < static_cast<std::size_t>(dim); ++c) {
       DoubleDouble sum = 0.0;
       for (std::size_t j = k > q ? k - q : 0; j <= std::min(p, k); ++j) {
-        const DoubleDouble apart = piece[j].x[c] - piece[j].w * near[k - j].x[c];
-        sum += DoubleDouble(of_piece[j] * of_near[k - j]) * apart;
+        const DoubleDouble off = piece[j].x[c] - piece[j].w * near[k - j].x[c];
+        sum += DoubleDouble(of_piece[j] * of_near[k - j]) * off;
       }
-      const double apart = (sum / DoubleDouble(of_both[k])).hi;
-      square += apart * apart;
+      apart[c] = (sum / DoubleDouble(of_both[k])).hi;
     }
-    largest = std::max(largest, std::sqrt(square));
+    largest = std::max(largest, length_of({apart, static_cast<std::size_t>(dim)}));
   }
   return largest / least;
 }

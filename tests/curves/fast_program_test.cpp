@@ -215,6 +215,22 @@ TEST(FastProgram, PiecesAboveTheAskedErrorArePlayedInDouble) {
   expect_same_bits(out, expected);
 }
 
+// The error of a quotient whose weights are 12 decades apart has no bound in float32.
+TEST(FastProgram, PiecesWithoutABoundArePlayedInDouble) {
+  const NurbsCurve curve =
+      testing::rational({0, 1, 0, 0.5, 0, 1}, {1e6, 2e-6, 2e-6, 1e6, 1e6, 1e6}, 2);
+  const FastProgram program(*compile_parametric(curve));
+  EXPECT_LT(program.fast_piece_count(), program.accurate().piece_count());
+  EXPECT_TRUE(std::isfinite(program.max_error()));
+  std::vector<float> out(257);
+  program.evaluate_grid(MapGrid{0, 1, 256}, 0, out);
+  for (int i = 0; i <= 256; ++i) {
+    double exact = 0;
+    curve.evaluate(i / 256.0, std::span(&exact, 1));
+    EXPECT_LE(std::abs(double(out[std::size_t(i)]) - exact), program.max_error()) << i;
+  }
+}
+
 TEST(FastProgram, AllCoordinatesInOnePassHaveTheBitsOfOneAtATime) {
   const std::uint64_t seed = support::test_seed();
   for (int i = 0; i < support::test_count(60); ++i) {

@@ -63,6 +63,10 @@ constexpr Fault kFaults[] = {
      "curve 'bell': knot 4 (nan) is not finite"},
     {"a knot far out", [](CurveSpec& s) { s.knots[9] = 2e9; }, ErrorCode::value_out_of_range,
      "curve 'bell': knot 9 (2e+09) is outside -1e+09..1e+09"},
+    {"knots that differ by next to nothing",
+     [](CurveSpec& s) { s.knots = {0, 0, 0, 0, 1e-300, 0.5, 1, 1, 1, 1}; },
+     ErrorCode::value_out_of_range,
+     "curve 'bell': knot 4 (1e-300) is above knot 3 (0) by less than 1e-280"},
     {"an undeclared jump",
      [](CurveSpec& s) {
        s.points.resize(8);

@@ -313,6 +313,20 @@ TEST(RemoveKnots, ThinsARecordedCurve) {
   EXPECT_LE(less->curve.point_count(), 40);
 }
 
+// Squares of distances this small are 0.
+TEST(RemoveKnots, BoundHoldsForPointsOfAnySize) {
+  for (const double size : {1e-260, 1e-200, 1e-167, 1.0, 1e6}) {
+    const NurbsCurve curve = made(spec_of(1, {0, 0.5 * size, 0.9 * size, size}));
+    const auto line = remove_knots(curve, size);
+    ASSERT_TRUE(line) << line.error().message;
+    EXPECT_EQ(line->removed, 2);
+    for (double u = 0; u <= 1; u += 0.125) {
+      EXPECT_LE(std::abs(at(line->curve, u) - at(curve, u)), line->max_error) << size;
+    }
+    EXPECT_LE(line->max_error, 0.25 * size);
+  }
+}
+
 TEST(RemoveKnots, KeepsAJumpThatIsLargerThanTheTolerance) {
   CurveSpec spec = spec_of(1, {0, 0.5, 1, -1, -0.5, 0}, {0, 0, 0.25, 0.5, 0.5, 0.75, 1, 1});
   spec.jumps = {0.5};

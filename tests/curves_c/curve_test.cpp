@@ -2,6 +2,7 @@
 // Curves and surfaces through C are those of C++, to the bit.
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "knotwave/curves/calculus.h"
 #include "knotwave/curves/extrapolate.h"
@@ -123,6 +124,21 @@ TEST(CCurve, OutputsOfTheWrongSizeAreRefusedAndNotWritten) {
   EXPECT_EQ(kw_curve_evaluate(curve.get(), 0.5, 2, out, 1), KW_VALUE_OUT_OF_RANGE);
   EXPECT_EQ(kw_curve_evaluate(curve.get(), 0.5, KW_SIDE_RIGHT, nullptr, 1), KW_NULL_ARGUMENT);
   EXPECT_EQ(all(out, 4), std::vector<double>(4, 7.0));
+}
+
+TEST(CSurface, PartialsEndAtOrder15) {
+  const double points[] = {0, 1, 2, 5}, weights[] = {1, 2, 3, 4};
+  kw_surface_spec spec = KW_SURFACE_SPEC_INIT;
+  spec.degree_u = spec.degree_v = 1;
+  spec.count_u = spec.count_v = 2;
+  spec.points = points;
+  spec.weights = weights;
+  spec.points_count = spec.weights_count = 4;
+  const Surface surface = made<Surface>(kw_surface_create, &spec);
+  std::vector<double> out(17 * 17);
+  EXPECT_EQ(kw_surface_derivatives(surface.get(), 0.5, 0.5, 15, out.data(), 16 * 16), KW_OK);
+  EXPECT_EQ(kw_surface_derivatives(surface.get(), 0.5, 0.5, 16, out.data(), 17 * 17),
+            KW_VALUE_OUT_OF_RANGE);
 }
 
 TEST(CSurface, IsThatOfTheLibrary) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every parser promises, checked in all builds.
+// What is promised, checked in all builds.
 #pragma once
 #include <cstdio>
 #include <cstdlib>
@@ -14,9 +14,20 @@
     }                                                                          \
   } while (false)
 
+/// a <= b, and what they are if not.
+#define FUZZ_CHECK_AT_MOST(a, b)                                                                \
+  do {                                                                                          \
+    const double fuzz_a = (a), fuzz_b = (b);                                                    \
+    if (!(fuzz_a <= fuzz_b)) {                                                                  \
+      std::fprintf(stderr, "%s:%d: not so: %s (%.17g) <= %s (%.17g)\n", __FILE__, __LINE__, #a, \
+                   fuzz_a, #b, fuzz_b);                                                         \
+      std::abort();                                                                             \
+    }                                                                                           \
+  } while (false)
+
 namespace knotwave::fuzz {
 
-/// An error says what and where; only a file that is too large has no line.
+/// What a parser says went wrong, and where; only a file that is too large has no line.
 inline void check_error(const Error& error) {
   FUZZ_CHECK(!error.message.empty());
   FUZZ_CHECK(!error.source.empty());

@@ -2,6 +2,8 @@
 // Two curves to one, slopes, areas and lengths, from C.
 #include "knotwave/curves/combine.h"
 
+#include <algorithm>
+
 #include "knotwave/curves/calculus.h"
 
 #include "handles.h"
@@ -23,6 +25,27 @@ kw_status kw_curve_make_compatible(const kw_curve* first, const kw_curve* second
                            if (!both) return std::move(both).error();
                            return TwoCurves{std::move(both->first), std::move(both->second)};
                          });
+}
+
+kw_status kw_curve_make_all_compatible(const kw_curve* const* curves, size_t curves_count,
+                                       kw_curve** out, size_t out_count, kw_error** error) {
+  if (out != nullptr) std::fill_n(out, out_count, nullptr);
+  return run({array("curves", curves, curves_count), array("out", out, out_count)}, error,
+             [&]() -> kw_status {
+               if (out_count != curves_count) {
+                 return report(error, KW_DIMENSION_MISMATCH, "as many go out as come in");
+               }
+               auto all = curves_of(curves, curves_count);
+               if (!all) return report(error, std::move(all).error());
+               auto alike = curves::make_compatible(std::span<const curves::NurbsCurve>(*all));
+               if (!alike) return report(error, std::move(alike).error());
+               std::vector<std::unique_ptr<kw_curve>> made;
+               for (auto& curve : *alike) {
+                 made.push_back(std::make_unique<kw_curve>(kw_curve{std::move(curve)}));
+               }
+               for (size_t i = 0; i < made.size(); ++i) out[i] = made[i].release();
+               return KW_OK;
+             });
 }
 
 kw_status kw_curve_morph(const kw_curve* first, const kw_curve* second, double amount,

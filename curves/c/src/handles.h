@@ -14,6 +14,7 @@
 #include "knotwave/base/index.h"
 #include "knotwave/base/result.h"
 #include "knotwave/curves.h"
+#include "knotwave/curves/compile.h"
 #include "knotwave/curves/curve_file.h"
 #include "knotwave/curves/curve_program.h"
 #include "knotwave/curves/nurbs_curve.h"
@@ -174,6 +175,11 @@ kw_status make_curve_set(std::initializer_list<Needed> needed, kw_curve_set** ou
 char* new_text(std::string_view text);
 /// Numbers of the caller's own.
 kw_doubles new_doubles(std::span<const double> numbers);
+
+/// Copies of all, unless one is NULL.
+Result<std::vector<curves::NurbsCurve>> curves_of(const kw_curve* const* handles, size_t count);
+/// Defaults for NULL.
+Result<curves::CompileOptions> compile_options_of(const kw_compile_options* options);
 
 /// Empty if the curve has that coordinate.
 std::optional<Error> coordinate_fault(const curves::NurbsCurve& curve, int32_t coordinate);

@@ -17,8 +17,13 @@ using curves::CurveProgram;
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr ControlRange::Kind kKinds[] = {ControlRange::Kind::weight, ControlRange::Kind::coordinate,
+                                         ControlRange::Kind::knot};
+static_assert(std::size(kKinds) == KW_CONTROL_KNOT + 1);
 
-Result<CompileOptions> options_of(const kw_compile_options* options) {
+}  // namespace
+
+Result<CompileOptions> c::compile_options_of(const kw_compile_options* options) {
   CompileOptions made;
   if (options == nullptr) return made;
   if (options->struct_size != sizeof(kw_compile_options)) {
@@ -31,15 +36,15 @@ Result<CompileOptions> options_of(const kw_compile_options* options) {
   made.max_pieces = options->max_pieces;
   for (size_t i = 0; i < options->controls_count; ++i) {
     const kw_control_range& from = options->controls[i];
-    if (from.kind != KW_CONTROL_WEIGHT && from.kind != KW_CONTROL_COORDINATE) {
-      return unknown_choice("the kind of a control", from.kind, 2);
+    if (from.kind < 0 || from.kind > KW_CONTROL_KNOT) {
+      return unknown_choice("the kind of a control", from.kind, std::size(kKinds));
     }
-    const auto kind = from.kind == KW_CONTROL_WEIGHT ? ControlRange::Kind::weight
-                                                     : ControlRange::Kind::coordinate;
-    made.controls.push_back({kind, from.point, from.coordinate, from.low, from.high});
+    made.controls.push_back({kKinds[from.kind], from.point, from.coordinate, from.low, from.high});
   }
   return made;
 }
+
+namespace {
 
 using Compiler = Result<CurveProgram> (*)(const curves::NurbsCurve&, const CompileOptions&);
 
@@ -47,7 +52,7 @@ kw_status compile_with(Compiler compiler, const kw_curve* curve, const kw_compil
                        kw_program** out, kw_error** error) {
   if (out != nullptr) *out = nullptr;
   return run({{"curve", curve}, {"out", out}}, error, [&]() -> kw_status {
-    const Result<CompileOptions> asked = options_of(options);
+    const Result<CompileOptions> asked = compile_options_of(options);
     if (!asked) return report(error, asked.error());
     return give(compiler(curve->curve, *asked), error,
                 [&](CurveProgram&& program) { *out = new kw_program{std::move(program)}; });
@@ -149,6 +154,14 @@ int32_t kw_program_control_count(const kw_program* program) {
 double kw_program_control_rest(const kw_program* program, int32_t control) {
   const bool there = control >= 0 && control < kw_program_control_count(program);
   return there ? program->program.control_rest(control) : kNone;
+}
+double kw_program_control_low(const kw_program* program, int32_t control) {
+  const bool there = control >= 0 && control < kw_program_control_count(program);
+  return there ? program->program.control_low(control) : kNone;
+}
+double kw_program_control_high(const kw_program* program, int32_t control) {
+  const bool there = control >= 0 && control < kw_program_control_count(program);
+  return there ? program->program.control_high(control) : kNone;
 }
 const double* kw_program_breaks(const kw_program* program, size_t* count) {
   return program ? lent(program->program.breaks(), count) : nothing_lent(count);

@@ -118,6 +118,17 @@ kw_doubles new_doubles(std::span<const double> numbers) {
   return {copy, numbers.size()};
 }
 
+Result<std::vector<curves::NurbsCurve>> curves_of(const kw_curve* const* handles, size_t count) {
+  std::vector<curves::NurbsCurve> curves;
+  for (size_t i = 0; i < count; ++i) {
+    if (handles[i] == nullptr) {
+      return fail(ErrorCode::malformed, "curve " + std::to_string(i) + " is NULL");
+    }
+    curves.push_back(handles[i]->curve);
+  }
+  return curves;
+}
+
 std::optional<Error> coordinate_fault(const curves::NurbsCurve& curve, int32_t coordinate) {
   if (coordinate >= 0 && coordinate < curve.dim()) return std::nullopt;
   return fail(ErrorCode::dimension_mismatch, "curve '" + curve.name() + "' has no coordinate " +

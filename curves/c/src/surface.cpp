@@ -8,7 +8,7 @@ using curves::NurbsSurface;
 
 namespace {
 
-constexpr int32_t kMaxOrder = 100;
+constexpr int32_t kMaxOrder = curves::kMaxDegree;
 
 Result<NurbsSurface> surface_of(const kw_surface_spec& spec) {
   if (spec.struct_size != sizeof(kw_surface_spec)) {

@@ -80,10 +80,10 @@ py::array_t<double> grid(const NurbsSurface& surface, const Array& u, const Arra
 }
 
 py::array_t<double> derivatives(const NurbsSurface& surface, double u, double v, int order) {
-  constexpr int kMost = 100;
+  constexpr int kMost = curves::kMaxDegree;
   if (order < 0 || order > kMost) {
     throw Fault{fail(ErrorCode::value_out_of_range,
-                     "order " + std::to_string(order) + " is not within 0..100")};
+                     "order " + std::to_string(order) + " is not within 0.." + std::to_string(kMost))};
   }
   py::array_t<double> out(with_dim({order + 1, order + 1}, surface.dim()));
   surface.derivatives(u, v, order, numbers(out));
@@ -168,7 +168,7 @@ void add_surface(py::module_& module) {
            "S at every (u[i], v[j]): [len(v), len(u)] or [len(v), len(u), dim].")
       .def("derivatives", &derivatives, py::arg("u"), py::arg("v"), py::arg("order") = 1,
            "d^(k+l)S / du^k dv^l at [k, l] of [order + 1, order + 1] (and dim); 0 where k + l is\n"
-           "above order.")
+           "above order, which is 0..15.")
       .def("iso_curve_at_v", &NurbsSurface::iso_curve_at_v, py::arg("v"), WithoutGil(),
            "The curve u -> S(u, v).")
       .def("iso_curve_at_u", &NurbsSurface::iso_curve_at_u, py::arg("u"), WithoutGil(),

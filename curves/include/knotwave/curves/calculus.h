@@ -35,8 +35,9 @@ Result<NurbsCurve> antiderivative(const NurbsCurve& curve, double start = 0);
 Result<double> integral(const NurbsCurve& curve, double u_a, double u_b, int coordinate = 0);
 
 /// Length of the path between u_a and u_b in either order, that of the graph (u, C(u)) for one
-/// coordinate: right to 2^-50 of the length of the control polygon. Jumps add no length; cusps and
-/// places where the path rests are no harder than others. Errors: parameter_out_of_range.
+/// coordinate: right to 2^-50 of the length of the control polygon and 2^-90 max|P|. Jumps add no
+/// length; cusps and places where the path rests are no harder than others. Errors:
+/// parameter_out_of_range.
 Result<double> arc_length(const NurbsCurve& curve, double u_a, double u_b);
 
 /// The least u at which the path from u_min is `length` long: arc_length() to it is right to 2^-49

@@ -17,8 +17,9 @@ namespace knotwave::curves {
 class FastProgram {
  public:
   FastProgram() : FastProgram(CurveProgram()) {}
-  /// Pieces whose float32 error would be above `max_error` are played by `program`, as are grids
-  /// beyond what a float can count: nodes more than 2^24 times a piece's width from 0. [control]
+  /// Pieces whose float32 error would be above `max_error`, or has no bound, are played by
+  /// `program`, as are grids beyond what a float can count: nodes more than 2^24 times a piece's
+  /// width from 0. [control]
   explicit FastProgram(CurveProgram program,
                        double max_error = std::numeric_limits<double>::infinity());
 

@@ -18,7 +18,8 @@ inline constexpr int kMaxPoints = 4096;
 inline constexpr double kMinWeight = 1e-6;
 inline constexpr double kMaxWeight = 1e6;
 inline constexpr double kMaxCoordinate = 1e6;
-inline constexpr double kMaxKnot = 1e9;  ///< largest magnitude
+inline constexpr double kMaxKnot = 1e9;         ///< largest magnitude
+inline constexpr double kMinKnotStep = 1e-280;  ///< between knots that differ
 
 /// What a curve file says, before anyone has checked it.
 struct CurveSpec {
@@ -43,9 +44,9 @@ class NurbsCurve {
   /// too_many_points, dimension_mismatch, knot_count_mismatch, knots_decrease, knot_multiplicity
   /// (an inner knot more than p times and not in `jumps`, or any more than p + 1 times; a periodic
   /// knot more than p times), empty_domain, weight_count_mismatch, weight_out_of_range,
-  /// weight_not_positive, coordinate_out_of_range, value_out_of_range (a knot beyond kMaxKnot),
-  /// parameter_out_of_range (a jump that is no inner knot), not_finite. The message names the
-  /// curve, the index at fault and both numbers.
+  /// weight_not_positive, coordinate_out_of_range, value_out_of_range (a knot beyond kMaxKnot, or
+  /// above the one before it by less than kMinKnotStep), parameter_out_of_range (a jump that is no
+  /// inner knot), not_finite. The message names the curve, the index at fault and both numbers.
   static Result<NurbsCurve> create(CurveSpec spec);
 
   const std::string& name() const noexcept { return name_; }
@@ -72,7 +73,9 @@ class NurbsCurve {
   /// C(u) to out[dim]. [any] u is clamped to the domain (wrapped if periodic), NaN counts as u_min.
   /// At a jump the right-hand value; at u_max the left-hand one. A clamped curve returns its end
   /// points exactly. The exact value rounded: within half an ulp of max|P|, so never outside the
-  /// range of its control points. O(p^2) in double-double, no allocation.
+  /// range of its control points. Here and in all that is said of ulps elsewhere, one counts as
+  /// 2^-1000 at least: below, doubles have no bits to spare. O(p^2) in double-double, no
+  /// allocation.
   void evaluate(double u, std::span<double> out) const noexcept;
   void evaluate(double u, Side side, std::span<double> out) const noexcept;
 

@@ -13,6 +13,9 @@ KW_API kw_status kw_curve_join(const kw_curve* first, const kw_curve* second, do
 KW_API kw_status kw_curve_make_compatible(const kw_curve* first, const kw_curve* second,
                                           kw_curve** out_first, kw_curve** out_second,
                                           kw_error** error);
+/// The same for any number: out[curves_count], each to be freed. All are made or none.
+KW_API kw_status kw_curve_make_all_compatible(const kw_curve* const* curves, size_t curves_count,
+                                              kw_curve** out, size_t out_count, kw_error** error);
 /// (1 - amount) first + amount second, amount 0..1.
 KW_API kw_status kw_curve_morph(const kw_curve* first, const kw_curve* second, double amount,
                                 kw_curve** out, kw_error** error);

@@ -11,12 +11,12 @@ KW_BEGIN
 typedef struct kw_program kw_program;
 
 typedef int32_t kw_control_kind;
-enum { KW_CONTROL_WEIGHT = 0, KW_CONTROL_COORDINATE = 1 };
+enum { KW_CONTROL_WEIGHT = 0, KW_CONTROL_COORDINATE = 1, KW_CONTROL_KNOT = 2 };
 
 /// Something that may be moved while the curve plays, with its range in absolute values.
 typedef struct kw_control_range {
   kw_control_kind kind;
-  int32_t point;       ///< from 0, as the spec lists them
+  int32_t point;       ///< from 0, as the spec lists them; KW_CONTROL_KNOT: of the knot
   int32_t coordinate;  ///< for KW_CONTROL_COORDINATE
   int32_t reserved;    ///< 0
   double low;
@@ -62,6 +62,8 @@ KW_API double kw_program_low(const kw_program* program, int32_t coordinate);
 KW_API double kw_program_high(const kw_program* program, int32_t coordinate);
 KW_API int32_t kw_program_control_count(const kw_program* program);
 KW_API double kw_program_control_rest(const kw_program* program, int32_t control);
+KW_API double kw_program_control_low(const kw_program* program, int32_t control);
+KW_API double kw_program_control_high(const kw_program* program, int32_t control);
 /// Where pieces meet, [piece_count + 1]. Borrowed.
 KW_API const double* kw_program_breaks(const kw_program* program, size_t* count);
 /// Powers of t = (u - start of the piece) / its width, lowest first, [piece_degree + 1]. Borrowed.

@@ -62,7 +62,7 @@ KW_API kw_status kw_surface_evaluate_grid(const kw_surface* surface, const doubl
                                           size_t u_count, const double* v, size_t v_count,
                                           double* out, size_t out_count);
 /// d^(k+l)S / du^k dv^l with k + l <= order to out[(k*(order+1)+l)*dim], the rest 0; out has
-/// [(order+1)*(order+1)*dim]. [any] order 0..100.
+/// [(order+1)*(order+1)*dim]. [any] order 0..15.
 KW_API kw_status kw_surface_derivatives(const kw_surface* surface, double u, double v,
                                         int32_t order, double* out, size_t out_count);
 

@@ -168,6 +168,12 @@ void add_combinations(py::module_& module) {
           py::arg("first"), py::arg("second"), WithoutGil(),
           "(first, second) with one degree, one knot vector, one count of points.")
       .def(
+          "make_all_compatible",
+          [](const std::vector<NurbsCurve>& curves) {
+            return take(curves::make_compatible(std::span<const NurbsCurve>(curves)));
+          },
+          py::arg("curves"), WithoutGil(), "The same for a list of any length.")
+      .def(
           "morph",
           [](const NurbsCurve& first, const NurbsCurve& second, double amount) {
             return take(curves::morph(first, second, amount));

@@ -15,6 +15,7 @@
 #include "knotwave/base/index.h"
 #include "knotwave/base/result.h"
 #include "knotwave/curves/nurbs_curve.h"
+#include "knotwave/curves/nurbs_surface.h"
 
 namespace knotwave::python {
 
@@ -79,6 +80,9 @@ void add_edits(py::class_<curves::NurbsCurve>& curve);
 void add_analyses(py::module_& module, py::class_<curves::NurbsCurve>& curve);
 void add_combinations(py::module_& module);
 void add_surface(py::module_& module);
+void add_surface_edits(py::class_<curves::NurbsSurface>& surface);
+void add_surface_shapes(py::module_& module);
+void add_play(py::module_& module);
 void add_program(py::module_& module);
 void add_maps(py::module_& module);
 void add_files(py::module_& module);

@@ -128,5 +128,7 @@ PYBIND11_MODULE(_knotwave, module) {
   add_files(module);
   add_shapes(module);
   add_fits(module);
+  add_surface_shapes(module);
+  add_play(module);
   module.attr("__version__") = KNOTWAVE_VERSION;
 }

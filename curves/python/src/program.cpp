@@ -16,10 +16,10 @@ using curves::NurbsCurve;
 
 ControlRange make_control(std::string_view kind, int point, double low, double high,
                           int coordinate) {
-  constexpr std::string_view kWords[] = {"weight", "coordinate"};
-  const bool is_weight = choice("kind", kind, kWords) == 0;
-  return {is_weight ? ControlRange::Kind::weight : ControlRange::Kind::coordinate, point,
-          coordinate, low, high};
+  constexpr std::string_view kWords[] = {"weight", "coordinate", "knot"};
+  constexpr ControlRange::Kind kKinds[] = {
+      ControlRange::Kind::weight, ControlRange::Kind::coordinate, ControlRange::Kind::knot};
+  return {kKinds[choice("kind", kind, kWords)], point, coordinate, low, high};
 }
 
 using Compiler = Result<CurveProgram> (*)(const NurbsCurve&, const CompileOptions&);
@@ -122,7 +122,8 @@ void add_compilers(py::module_& module) {
                            "Something that may be moved while a curve plays, with its range.")
       .def(py::init(&make_control), py::arg("kind"), py::arg("point"), py::arg("low"),
            py::arg("high"), py::arg("coordinate") = 0,
-           "kind 'weight' or 'coordinate'; point from 0; low and high in absolute values.");
+           "kind 'weight', 'coordinate' or 'knot'; point (or knot) from 0; low and high in\n"
+           "absolute values.");
   const std::vector<ControlRange> none;
   module
       .def("compile_function", &compile_with<curves::compile_function>, py::arg("curve"),

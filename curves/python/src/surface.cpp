@@ -82,8 +82,9 @@ py::array_t<double> grid(const NurbsSurface& surface, const Array& u, const Arra
 py::array_t<double> derivatives(const NurbsSurface& surface, double u, double v, int order) {
   constexpr int kMost = curves::kMaxDegree;
   if (order < 0 || order > kMost) {
-    throw Fault{fail(ErrorCode::value_out_of_range,
-                     "order " + std::to_string(order) + " is not within 0.." + std::to_string(kMost))};
+    throw Fault{
+        fail(ErrorCode::value_out_of_range,
+             "order " + std::to_string(order) + " is not within 0.." + std::to_string(kMost))};
   }
   py::array_t<double> out(with_dim({order + 1, order + 1}, surface.dim()));
   surface.derivatives(u, v, order, numbers(out));
@@ -175,6 +176,7 @@ void add_surface(py::module_& module) {
            "The curve v -> S(u, v).")
       .def("_repr_svg_", [](const NurbsSurface& self) { return curves::plot_svg(self); });
   add_properties(surface);
+  add_surface_edits(surface);
 }
 
 }  // namespace knotwave::python

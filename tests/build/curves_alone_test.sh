@@ -35,6 +35,18 @@ quietly cmake -S "$outside" -B "$work/cmake" -G Ninja -DCMAKE_PREFIX_PATH="$work
 quietly cmake --build "$work/cmake"
 check "find_package, C++" "$("$work/cmake/cpp")"
 check "find_package, C" "$("$work/cmake/c")"
+# One component each, in a project of that language alone.
+for only in "cpp CXX curves" "c C curves_c"; do
+  read -r suffix language component <<<"$only"
+  mkdir "$work/only_$component"
+  printf '%s\n' "cmake_minimum_required(VERSION 3.24)" "project(only LANGUAGES $language)" \
+    "find_package(knotwave REQUIRED COMPONENTS $component)" "add_executable(only \"$outside/main.$suffix\")" \
+    "target_link_libraries(only PRIVATE knotwave::$component)" >"$work/only_$component/CMakeLists.txt"
+  quietly cmake -S "$work/only_$component" -B "$work/only_$component/build" -G Ninja \
+    -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER="$cc"
+  quietly cmake --build "$work/only_$component/build"
+  check "COMPONENTS $component" "$("$work/only_$component/build/only")"
+done
 
 PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name knotwave-curves.pc)")
 export PKG_CONFIG_PATH

@@ -19,6 +19,10 @@ double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y; }
 Vector across(Vector a) { return {-a.y, a.x}; }
 
 constexpr int kMostHalvings = 40;
+// Pairs of strokes looked at: for all, and for each part more. Strokes that run beside each other
+// at a distance d of their length take some d^(-1/2).
+constexpr int kMostPairs = 1 << 15;
+constexpr int kMostPairsOfAPart = 64;
 
 // A part of a part, and whether it still has that one's ends.
 struct Stroke {
@@ -83,8 +87,17 @@ bool meet_in_corner_only(const Hull& a, const Hull& b) {
          std::all_of(b.begin() + 1, b.end(), [&](Vector p) { return dot(normal, p) > 0; });
 }
 
-// Where the two meet, if they may.
-std::optional<Vector> meeting_of(const Stroke& a, const Stroke& b, Joints joints, int halvings) {
+Vector place_of(const Stroke& stroke) {
+  double place[2];
+  stroke.points.front().project(place);
+  return {place[0], place[1]};
+}
+
+// Where the two meet, if they may. `pairs` is how many more may be looked at: they do, if that is
+// not enough.
+std::optional<Vector> meeting_of(const Stroke& a, const Stroke& b, Joints joints, int halvings,
+                                 long& pairs) {
+  if (--pairs < 0) return place_of(a);
   const bool forward = joints.end_to_start && a.has_end && b.has_start;
   const bool backward = joints.start_to_end && a.has_start && b.has_end;
   if (!forward && !backward && are_apart(a, b)) return std::nullopt;
@@ -98,13 +111,11 @@ std::optional<Vector> meeting_of(const Stroke& a, const Stroke& b, Joints joints
   }
   if (halvings == kMostHalvings) {
     if (forward || backward) return std::nullopt;  // a cusp
-    double place[2];
-    a.points.front().project(place);
-    return Vector{place[0], place[1]};
+    return place_of(a);
   }
   for (const Stroke& part : halves_of(a)) {
     for (const Stroke& other : halves_of(b)) {
-      if (auto met = meeting_of(part, other, joints, halvings + 1)) return met;
+      if (auto met = meeting_of(part, other, joints, halvings + 1, pairs)) return met;
     }
   }
   return std::nullopt;
@@ -146,6 +157,7 @@ std::optional<Meeting> find_meeting(std::span<const std::vector<LoopPart>> loops
       all.push_back({loop, i, box_of(loops[loop][i])});
     }
   }
+  long pairs = kMostPairs + kMostPairsOfAPart * static_cast<long>(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = i + 1; j < all.size(); ++j) {
       const Named &a = all[i], &b = all[j];
@@ -155,7 +167,7 @@ std::optional<Meeting> find_meeting(std::span<const std::vector<LoopPart>> loops
       const Joints joints{same && b.index == a.index + 1,
                           same && a.index == 0 && b.index == size - 1};
       const auto met = meeting_of(stroke_of(loops[a.loop][a.index]),
-                                  stroke_of(loops[b.loop][b.index]), joints, 0);
+                                  stroke_of(loops[b.loop][b.index]), joints, 0, pairs);
       if (met) return Meeting{a.loop, b.loop, met->x, met->y};
     }
   }

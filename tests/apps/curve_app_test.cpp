@@ -128,7 +128,7 @@ TEST_F(CurveApp, CheckCompilesWhatItCallsOk) {
   EXPECT_EQ(checked(arch), "");
   EXPECT_EQ(checked("degree = 8\npoints = [0, 1, 1, 1, 1, 1, 1, 1, 0]\n"), "");
   EXPECT_THAT(checked("degree = 1\npoints = [0, 1, 1, 0]\nknots = [0, 0, 1e-300, 0.5, 1, 1]\n"),
-              StartsWith("6:9: error: envelope 'amp': "));
+              StartsWith("10:16: error: curve 'c': knot 2 (1e-300) is above knot 1 (0) by less"));
   EXPECT_THAT(
       checked(arch, "[[maps]]\nfrom = 'mod'\nto = 'curve.c.weight.1'\nlow = 6\nhigh = 10\n"),
       StartsWith("14:7: error: map 1: low (6) to high (10) leaves out 5"));

@@ -309,12 +309,11 @@ TEST(NurbsCurve, StaysInTheHullOfThePointsOfItsSpan) {
 // Products of numbers this small have no lower halves any more.
 TEST(NurbsCurve, StaysInTheHullOfTheSmallestNumbersThereAre) {
   constexpr double kLeast = std::numeric_limits<double>::denorm_min();
-  CurveSpec spec = spec_of(1, {1, -7 * kLeast, 1, -7 * kLeast, 1, -7 * kLeast});
-  spec.dim = 2;
+  CurveSpec spec = spec_of(1, 2, {1, -7 * kLeast, 1, -7 * kLeast, 1, -7 * kLeast}, {});
   for (const auto& weights : {std::vector<double>(), std::vector<double>{1, 3, 0.7}}) {
     spec.weights = weights;
     const NurbsCurve curve = made(spec);
-    for (double u = 0; u <= 1; u += 0.015625) EXPECT_EQ(at(curve, u, Side::right, 1), -7 * kLeast);
+    for (double u = 0; u <= 1; u += 0.015625) EXPECT_EQ(at(curve, u)[1], -7 * kLeast);
   }
 }
 

@@ -101,6 +101,8 @@ double random_parameter(Dice& dice, const curves::NurbsCurve& curve) {
     case 0:
       return knot;
     case 1:
+      // Near 0 doubles are nearer than knots may be, should it become one.
+      if (std::abs(knot) < 0x1p-800) return knot + (dice.one_in(2) ? -1e-270 : 1e-270);
       return std::nextafter(knot, dice.one_in(2) ? -1e30 : 1e30);
     case 2:
       return dice.one_in(2) ? curve.u_min() : curve.u_max();

@@ -216,6 +216,13 @@ TEST(TrimRegion, LoopsThatOnlyComeNearAreNot) {
               curve_of(2, {2, 3, 1, 0, 0, 0})}});
 }
 
+// Without an end to the pairs looked at, this took minutes.
+TEST(TrimRegion, LoopsTooNearToTellApartSoonAreRefused) {
+  const Error error = fault_of({circle(0, 0, 1), backwards(circle(0, 0, 1 - 1e-11))});
+  EXPECT_EQ(error.code, ErrorCode::malformed);
+  EXPECT_THAT(error.message, testing::HasSubstr("loops 0 and 1 cross or touch"));
+}
+
 TEST(TrimRegion, OtherFaultsNameTheLoop) {
   EXPECT_EQ(fault_of({{curve_of(1, {0, 0, 1, 1}), curve_of(1, {1, 1, 0, 0})}}).code,
             ErrorCode::malformed);

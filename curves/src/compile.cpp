@@ -17,7 +17,6 @@ Result<void> check_options(const NurbsCurve& curve, const CompileOptions& option
     return fail(ErrorCode::value_out_of_range,
                 "curve '" + curve.name() + "': max_error and max_pieces must be above 0");
   }
-  if (auto widths = check_widths(curve); !widths) return widths;
   return check_controls(curve, options.controls);
 }
 

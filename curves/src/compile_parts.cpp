@@ -99,18 +99,6 @@ double error_at_corner(const CurveProgram& program, const NurbsCurve& curve,
 
 }  // namespace
 
-Result<void> check_widths(const NurbsCurve& curve) {
-  const auto knots = curve.knots();
-  for (int i = curve.degree(); i < curve.point_count(); ++i) {
-    const double width = knots[at(i) + 1] - knots[at(i)];
-    if (width == 0 || width > 1e-280) continue;
-    return fail(ErrorCode::value_out_of_range,
-                "curve '" + curve.name() + "': knots " + base::number_text(knots[at(i)]) + " and " +
-                    base::number_text(knots[at(i) + 1]) + " are too close to play");
-  }
-  return {};
-}
-
 ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& controls) {
   ProgramParts parts;
   parts.dim = curve.dim();

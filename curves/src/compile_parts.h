@@ -27,9 +27,6 @@ ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& 
 /// without weights or controls.
 double rounding_bound(const ProgramParts& parts);
 
-/// Whether knots leave every span a width whose inverse is a normal number.
-Result<void> check_widths(const NurbsCurve& curve);
-
 /// Largest |program - curve| over all coordinates, with controls at rest and at every corner of
 /// their ranges; doubled where weights lie far apart.
 Result<double> measured_error(const CurveProgram& program, const NurbsCurve& curve,

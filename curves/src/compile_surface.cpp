@@ -3,7 +3,6 @@
 #include <cmath>
 #include <string>
 
-#include "knotwave/base/document.h"
 #include "knotwave/curves/surface_program.h"
 
 #include "span_polynomial.h"
@@ -12,8 +11,6 @@ namespace knotwave::curves {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-constexpr double kNarrowest = 1e-280;  // 1 / width is finite
 
 HomogeneousCurve direction(int degree, const KnotSequence& sequence) {
   HomogeneousCurve curve;
@@ -54,8 +51,6 @@ class SurfaceCompiler {
       }
     }
     take_breaks(cells.front().front(), program_.breaks_v_, program_.inverse_widths_v_);
-    if (auto ok = check_widths("u", program_.breaks_u_); !ok) return ok.error();
-    if (auto ok = check_widths("v", program_.breaks_v_); !ok) return ok.error();
     write_cells(cells);
     bound_error();
     return std::move(program_);
@@ -68,17 +63,6 @@ class SurfaceCompiler {
                                                     std::to_string(degree) + " along " + name +
                                                     " is above " + std::to_string(kMaxPieceDegree) +
                                                     ", the most that can be played");
-  }
-
-  Result<void> check_widths(const char* name, const std::vector<double>& breaks) const {
-    for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
-      if (breaks[i + 1] - breaks[i] >= kNarrowest) continue;
-      return fail(ErrorCode::value_out_of_range, "surface '" + surface_.name() + "': knots " +
-                                                     base::number_text(breaks[i]) + " and " +
-                                                     base::number_text(breaks[i + 1]) + " along " +
-                                                     name + " are closer than 1e-280");
-    }
-    return {};
   }
 
   std::vector<std::vector<SpanPolynomial>> row_spans() const {

@@ -21,7 +21,7 @@ Vector across(Vector a) { return {-a.y, a.x}; }
 constexpr int kMostHalvings = 40;
 // Pairs of strokes looked at: for all, and for each part more. Strokes that run beside each other
 // at a distance d of their length take some d^(-1/2).
-constexpr int kMostPairs = 1 << 15;
+constexpr int kMostPairs = 1 << 18;
 constexpr int kMostPairsOfAPart = 64;
 
 // A part of a part, and whether it still has that one's ends.

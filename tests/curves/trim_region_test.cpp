@@ -218,7 +218,7 @@ TEST(TrimRegion, LoopsThatOnlyComeNearAreNot) {
 
 // Without an end to the pairs looked at, this took minutes.
 TEST(TrimRegion, LoopsTooNearToTellApartSoonAreRefused) {
-  const Error error = fault_of({circle(0, 0, 1), backwards(circle(0, 0, 1 - 1e-11))});
+  const Error error = fault_of({circle(0, 0, 1), backwards(circle(0, 0, 1 - 2e-12))});
   EXPECT_EQ(error.code, ErrorCode::malformed);
   EXPECT_THAT(error.message, testing::HasSubstr("loops 0 and 1 cross or touch"));
 }

@@ -40,9 +40,8 @@ Result<NurbsCurve> curve_with(const NurbsCurve& curve, const std::vector<Control
 /// jumps. docs/compile.md has the method. Errors: not_a_function (x goes back: the message gives
 /// the interval of u), not_scalar (dim > 2), error_bound_missed, control_conflict (point and weight
 /// of the same index, or two controls for the same number), value_out_of_range (a control's range
-/// leaves the limits of curve files or leaves out the value written there; knots closer than
-/// 1e-280), empty_domain (2-D: x never moves), unsupported (controls on a 2-D curve or on degree >
-/// 7).
+/// leaves the limits of curve files or leaves out the value written there), empty_domain (2-D: x
+/// never moves), unsupported (controls on a 2-D curve or on degree > 7).
 Result<CurveProgram> compile_function(const NurbsCurve& curve, const CompileOptions& options = {});
 
 /// Every coordinate as a function of u (waveforms, orbits, arcs). Errors as above but

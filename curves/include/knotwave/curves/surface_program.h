@@ -72,8 +72,7 @@ class SurfaceProgram {
   std::vector<double> low_, high_;
 };
 
-/// [control] Errors: degree_out_of_range (above kMaxPieceDegree in a direction), value_out_of_range
-/// (knots closer than 1e-280).
+/// [control] Errors: degree_out_of_range (above kMaxPieceDegree in a direction).
 Result<SurfaceProgram> compile_surface(const NurbsSurface& surface);
 
 }  // namespace knotwave::curves

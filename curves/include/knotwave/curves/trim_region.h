@@ -27,7 +27,7 @@ class TrimRegion {
   /// and are joined: each curve then begins where the one before it ends. Counter-clockwise loops
   /// keep their inside, clockwise ones the outside; no loop at all keeps everything. That loops
   /// neither cross nor touch, themselves included, is proved by their hulls; ones nearer than 2^-40
-  /// of their size count as touching, and so do ones that 2^15 pairs of hulls, 64 more for each
+  /// of their size count as touching, and so do ones that 2^18 pairs of hulls, 64 more for each
   /// part, do not tell apart. Errors: dimension_mismatch, not_closed (a gap or a jump: the
   /// message has the places), malformed (loops cross or touch; what one keeps another does not; a
   /// loop encloses nothing), value_out_of_range (tolerance < 0).

@@ -29,6 +29,14 @@ bool has_corner(const NurbsCurve& curve) {
   return false;
 }
 
+// An end of the domain that comes p + 1 times within the knots: the point beyond it has no part in
+// the curve, and its leg no width.
+bool has_idle_end(const NurbsCurve& curve) {
+  const auto knots = curve.knots();
+  const std::size_t p = index_of(curve.degree()), n = index_of(curve.point_count());
+  return knots[1] == knots[p + 1] || knots[n - 1] == knots[n + p - 1];
+}
+
 /// Slope of leg i of the control polygon, over the knots its two points share.
 DoubleDouble leg_slope(const NurbsCurve& curve, const KnotSequence& knots, int i, int c) {
   const int p = curve.degree(), dim = curve.dim();
@@ -142,12 +150,15 @@ Result<NurbsCurve> hodograph(const NurbsCurve& curve) {
                                             number_text(curve.jumps()[0]) +
                                             " and has no slope there: split it");
   }
-  if (curve.is_rational()) return rational_hodograph(curve);
   const int p = curve.degree();
-  if ((curve.is_periodic() && (p == 1 || has_corner(curve))) || (p == 1 && !curve.is_clamped())) {
+  const bool is_cut = curve.is_periodic() ? !curve.is_rational() && (p == 1 || has_corner(curve))
+                                          : has_idle_end(curve) || (!curve.is_rational() &&
+                                                                    p == 1 && !curve.is_clamped());
+  if (is_cut) {
     auto open = sub_curve(curve, curve.u_min(), curve.u_max());
     return open ? hodograph(*open) : open;
   }
+  if (curve.is_rational()) return rational_hodograph(curve);
   if (p == 1) return steps_of(curve);
   const KnotSequence knots{curve.knots(), p, curve.is_periodic()};
   CurveSpec spec = curve.spec();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // hodograph() of calculus.h.
+#include <algorithm>
 #include <limits>
 
 #include "knotwave/base/document.h"
@@ -29,12 +30,14 @@ bool has_corner(const NurbsCurve& curve) {
   return false;
 }
 
-// An end of the domain that comes p + 1 times within the knots: the point beyond it has no part in
-// the curve, and its leg no width.
+// An end of the domain that comes p + 1 times within the knots: points beyond it have no part in
+// the curve, and a leg there no width.
 bool has_idle_end(const NurbsCurve& curve) {
   const auto knots = curve.knots();
-  const std::size_t p = index_of(curve.degree()), n = index_of(curve.point_count());
-  return knots[1] == knots[p + 1] || knots[n - 1] == knots[n + p - 1];
+  const auto is_idle = [&](double end, double outermost) {
+    return end != outermost && std::ranges::count(knots, end) > curve.degree();
+  };
+  return is_idle(curve.u_min(), knots.front()) || is_idle(curve.u_max(), knots.back());
 }
 
 /// Slope of leg i of the control polygon, over the knots its two points share.

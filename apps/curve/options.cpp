@@ -18,7 +18,7 @@ namespace knotwave::curve_app {
 namespace {
 
 constexpr const char* kAbout =
-    "Checks, describes, evaluates, draws, edits and fits Knotwave curves and surfaces.\n"
+    "Checks, describes, evaluates, draws, edits and fits curves and surfaces.\n"
     "FILE is a curve file, or a patch that holds curves; FILE#NAME is one of them.";
 
 constexpr const char* kMore =

@@ -44,7 +44,10 @@ extern "C" void stop_at_signal(int) {
 }
 
 void set_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, stop_at_signal);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // Who starts us with a signal ignored (nohup, a job in the background) wants it so.
+    if (std::signal(signal, stop_at_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // the write fails then
 }
 

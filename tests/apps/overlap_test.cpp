@@ -113,7 +113,7 @@ TEST_F(Overlap, APictureNeverReplacesTheCurve) {
   for (const char* name : {"x.svg", "y.svg"}) {
     expect_refused(
         support::run_program({"knotwave-curve", "plot", "x.svg#env", "-o", name}, options),
-        std::string("--output '") + name + "' would overwrite the file of the curve 'x.svg'");
+        std::string("--output '") + name + "' would overwrite the file that is read, 'x.svg'");
   }
   EXPECT_EQ(all_files(), before);
 }

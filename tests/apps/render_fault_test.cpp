@@ -238,6 +238,15 @@ TEST_F(RenderFaults, AnInterruptIsTold) {
   EXPECT_THAT(done.err, HasSubstr("interrupted; no unfinished file is left"));
 }
 
+TEST_F(RenderFaults, ASignalThatIsIgnoredFromTheStartStaysIgnored) {
+  support::ProgramOptions options;
+  options.is_in_background = true;
+  options.interrupt_after_s = 0.5;
+  options.kill_after_s = 1.5;
+  // It went on until it was killed.
+  EXPECT_EQ(run(long_render(), options).exit_code, 137);
+}
+
 TEST_F(RenderFaults, AKillLeavesAPartThatTheNextRunSweeps) {
   write("out.wav", "old");
   const base::RandomStream random{.seed = support::test_seed(), .voice = 1, .purpose = 0};

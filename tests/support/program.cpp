@@ -24,6 +24,9 @@ double seconds_since(Clock::time_point start) {
 
 [[noreturn]] void become(const std::vector<std::string>& argv, const ProgramOptions& options,
                          int out, int err) {
+  // Whatever we were born with ourselves.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+  if (options.is_in_background) std::signal(SIGINT, SIG_IGN);
   const int null = open("/dev/null", O_RDONLY);
   dup2(null, 0);
   dup2(out, 1);

@@ -18,12 +18,13 @@ struct ProgramRun {
 };
 
 struct ProgramOptions {
-  double timeout_s = 120;        ///< killed after that; exit_code is then 137
-  std::string folder;            ///< working directory; empty = ours
-  double interrupt_after_s = 0;  ///< > 0: SIGINT after that time
-  double kill_after_s = 0;       ///< > 0: SIGKILL after that time
-  long max_file_bytes = -1;      ///< >= 0: RLIMIT_FSIZE
-  long max_address_bytes = -1;   ///< >= 0: RLIMIT_AS
+  double timeout_s = 120;         ///< killed after that; exit_code is then 137
+  std::string folder;             ///< working directory; empty = ours
+  double interrupt_after_s = 0;   ///< > 0: SIGINT after that time
+  bool is_in_background = false;  ///< born with SIGINT ignored, as a shell's jobs behind &
+  double kill_after_s = 0;        ///< > 0: SIGKILL after that time
+  long max_file_bytes = -1;       ///< >= 0: RLIMIT_FSIZE
+  long max_address_bytes = -1;    ///< >= 0: RLIMIT_AS
   /// Takes standard output as it comes instead of keeping it.
   std::function<void(std::span<const char>)> on_output;
 };

@@ -49,7 +49,9 @@ Outcome insert(const NurbsCurve& curve, ByteReader& bytes) {
   }
   check_curve(back->curve);
   FUZZ_CHECK_AT_MOST(back->max_error, 16 * ulp_of(curve));
-  if (back->removed == times && back->curve.point_count() == curve.point_count()) {
+  // The knots of a seam may be written at its other end.
+  const bool at_seam = curve.is_periodic() && (u == curve.u_min() || u == curve.u_max());
+  if (back->removed == times && !at_seam) {
     FUZZ_CHECK(std::ranges::equal(back->curve.knots(), curve.knots()));
   }
   check_same(curve, back->curve, curve.u_min(), curve.u_max(), 22 * ulp_of(curve));

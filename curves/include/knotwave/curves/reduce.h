@@ -24,8 +24,9 @@ struct ReducedCurve {
 /// limits). A jump is removed like any other knot when the tolerance allows: its ends become their
 /// mean. remove(insert(u)) gives the curve back: the same knots, and values within 4 ulp of max|P|;
 /// as rounding counts, that takes a tolerance of a few ulp, not 0. A periodic curve stays periodic;
-/// its seam keeps one knot. Errors: parameter_out_of_range (u is no inner knot, nor a seam with
-/// knots to spare), value_out_of_range (times < 0; tolerance < 0 or not finite).
+/// its seam keeps one knot, and may have the rest written at its other end. Errors:
+/// parameter_out_of_range (u is no inner knot, nor a seam with knots to spare), value_out_of_range
+/// (times < 0; tolerance < 0 or not finite).
 Result<ReducedCurve> remove_knot(const NurbsCurve& curve, double u, int times, double tolerance);
 
 /// Removes inner knots as long as `tolerance` allows, cheapest first; what each one costs is

@@ -106,7 +106,7 @@ void add_analyses(py::module_& module, py::class_<NurbsCurve>& curve) {
       .def(
           "closest_point",
           [](const NurbsCurve& self, const Array& point) {
-            return take(curves::closest_point(self, numbers(point)));
+            return take(curves::closest_point(self, row("point", point)));
           },
           py::arg("point"), WithoutGil(), "The ClosestPoint to point [dim].")
       .def(

@@ -24,10 +24,11 @@ NurbsCurve make_curve(const Array& points, int degree, const std::optional<Array
   spec.degree = degree;
   spec.dim = dim_of(points);
   spec.points.assign(points.data(), points.data() + points.size());
-  spec.weights = copied(weights);
-  spec.knots = copied(knots);
+  if (weights && weights->ndim() > 1) check_shape("weights", *weights, {points.shape(0)});
+  spec.weights = copied_row("weights", weights);
+  spec.knots = copied_row("knots", knots);
   spec.periodic = periodic;
-  spec.jumps = copied(jumps);
+  spec.jumps = copied_row("jumps", jumps);
   return take(NurbsCurve::create(std::move(spec)));
 }
 
@@ -218,12 +219,14 @@ void add_curve(py::module_& module) {
       .def(
           "plot_svg",
           [](const NurbsCurve& self, int width_px, int height_px) {
+            check_pixels(width_px, height_px);
             curves::PlotOptions options;
             options.width_px = width_px;
             options.height_px = height_px;
             return curves::plot_svg(self, options);
           },
-          py::arg("width_px") = 960, py::arg("height_px") = 540, "A picture as SVG.")
+          py::arg("width_px") = 960, py::arg("height_px") = 540,
+          "A picture as SVG, 64 to 16384 pixels each way.")
       .def("_repr_svg_", [](const NurbsCurve& self) { return curves::plot_svg(self); });
   add_properties(curve);
   add_evaluation(curve);

@@ -43,7 +43,7 @@ py::tuple to_bezier(const NurbsCurve& curve) {
 NurbsCurve from_bezier(const Array& ends, const Array& points, const std::optional<Array>& weights,
                        double join_tolerance) {
   const py::ssize_t count = ends.size() - 1;
-  const bool has_shape = points.ndim() == 2 || points.ndim() == 3;
+  const bool has_shape = ends.ndim() == 1 && (points.ndim() == 2 || points.ndim() == 3);
   if (count < 1 || !has_shape || points.shape(0) != count ||
       (weights && (weights->ndim() != 2 || weights->shape(0) != count ||
                    weights->shape(1) != points.shape(1)))) {
@@ -105,7 +105,7 @@ void add_exact_edits(py::class_<NurbsCurve>& curve) {
       .def(
           "refine",
           [](const NurbsCurve& self, const Array& knots) {
-            return take(curves::refine(self, numbers(knots)));
+            return take(curves::refine(self, row("knots", knots)));
           },
           py::arg("knots"), WithoutGil(), "The same curve with all of knots [k] more.")
       .def(

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Curve files as dictionaries.
+#include <filesystem>
+
+#include <pybind11/stl/filesystem.h>
+
 #include "knotwave/base/file.h"
 #include "knotwave/curves/curve_file.h"
 
@@ -67,15 +71,17 @@ void add_files(py::module_& module) {
           "The curves and surfaces of a TOML text, by name. source_name is what errors begin with.")
       .def(
           "read_curves",
-          [](const std::string& path) { return dict_of(take(curves::read_curves(path))); },
+          [](const std::filesystem::path& path) {
+            return dict_of(take(curves::read_curves(path.string())));
+          },
           py::arg("path"), "The curves and surfaces of a file, by name.")
       .def("curves_text", &text_of, py::arg("items"),
            "The text of a curve file that reads back to equal curves and surfaces. Each needs a\n"
            "name of its own.")
       .def(
           "write_curves",
-          [](const std::string& path, const py::iterable& items) {
-            const auto written = base::write_file(path, text_of(items));
+          [](const std::filesystem::path& path, const py::iterable& items) {
+            const auto written = base::write_file(path.string(), text_of(items));
             if (!written) throw Fault{written.error()};
           },
           py::arg("path"), py::arg("items"),

@@ -164,7 +164,7 @@ void add_definitions(py::class_<MapSet>& maps) {
       .def(
           "set_current",
           [](MapSet& self, std::string_view target, const Array& value) {
-            self.set_current(target_of(target), numbers(value));
+            self.set_current(target_of(target), row("value", value));
           },
           py::arg("target"), py::arg("value"),
           "The value a target has where no map drives it: a number, or up to 4.")

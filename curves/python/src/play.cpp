@@ -139,10 +139,7 @@ py::array_t<double> rows_of(const std::vector<curves::Interval>& kept) {
 }
 
 py::object contains(const TrimRegion& region, const Array& u, const Array& v) {
-  const py::object both = py::module_::import("numpy").attr("broadcast_arrays")(u, v);
-  const auto pair = py::reinterpret_borrow<py::sequence>(both);
-  const Array all_u = Array::ensure(py::object(pair[0])),
-              all_v = Array::ensure(py::object(pair[1]));
+  const auto [all_u, all_v] = broadcast(u, v);
   py::array_t<bool> out(shape_of(all_u));
   for (py::ssize_t i = 0; i < out.size(); ++i) {
     out.mutable_data()[i] = region.contains(all_u.data()[i], all_v.data()[i]);

@@ -52,7 +52,7 @@ py::object evaluate(const CurveProgram& program, const Array& u, int coordinate,
   }
   py::array_t<double> out(shape_of(u));
   const auto places = numbers(u);
-  const auto moved = controls ? numbers(*controls) : std::span<const double>();
+  const auto moved = controls ? row("controls", *controls) : std::span<const double>();
   const std::span<double> values = numbers(out);
   {
     const py::gil_scoped_release others_go_on;

@@ -12,10 +12,13 @@ namespace {
 
 using curves::NurbsCurve;
 
-void check_same_shape(const Array& values, const Array& slopes, const char* name) {
-  if (shape_of(values) == shape_of(slopes)) return;
-  throw Fault{
-      fail(ErrorCode::dimension_mismatch, std::string(name) + " must have the shape of values")};
+/// One for each datum.
+std::span<const double> parameters_of(const char* name, const Array& parameters,
+                                      const Array& data) {
+  if (parameters.ndim() != 1 && data.ndim() > 0) {
+    check_shape(name, parameters, {data.shape(0)});
+  }
+  return numbers(parameters);
 }
 
 std::vector<NurbsCurve> from_svg_path(std::string_view d, std::string_view y) {
@@ -56,7 +59,7 @@ void add_shapes(py::module_& module) {
       .def(
           "conic",
           [](const Array& p0, const Array& p1, const Array& p2, double w) {
-            return take(curves::conic(numbers(p0), numbers(p1), numbers(p2), w));
+            return take(curves::conic(row("p0", p0), row("p1", p1), row("p2", p2), w));
           },
           py::arg("p0"), py::arg("p1"), py::arg("p2"), py::arg("w"),
           "From p0 [2] to p2 [2], tangents meet in p1 [2], shape factor w.")
@@ -76,9 +79,9 @@ void add_shapes(py::module_& module) {
           "hermite",
           [](const Array& times, const Array& values, const Array& slopes_in,
              const Array& slopes_out) {
-            check_same_shape(values, slopes_in, "slopes_in");
-            check_same_shape(values, slopes_out, "slopes_out");
-            return take(curves::hermite(numbers(times), numbers(values), numbers(slopes_in),
+            check_shape("slopes_in", slopes_in, shape_of(values));
+            check_shape("slopes_out", slopes_out, shape_of(values));
+            return take(curves::hermite(row("times", times), numbers(values), numbers(slopes_in),
                                         numbers(slopes_out), dim_of(values)));
           },
           py::arg("times"), py::arg("values"), py::arg("slopes_in"), py::arg("slopes_out"),
@@ -103,16 +106,16 @@ void add_fits(py::module_& module) {
       .def(
           "interpolate_at",
           [](const Array& parameters, const Array& points, int degree) {
-            return take(curves::interpolate_at(numbers(parameters), numbers(points), dim_of(points),
-                                               degree));
+            return take(curves::interpolate_at(parameters_of("parameters", parameters, points),
+                                               numbers(points), dim_of(points), degree));
           },
           py::arg("parameters"), py::arg("points"), py::arg("degree") = 3, WithoutGil(),
           "Through points [n] or [n, dim] at parameters [n], strictly increasing.")
       .def(
           "approximate",
           [](const Array& parameters, const Array& values, int degree, int point_count) {
-            return take(curves::approximate(numbers(parameters), numbers(values), dim_of(values),
-                                            degree, point_count));
+            return take(curves::approximate(parameters_of("parameters", parameters, values),
+                                            numbers(values), dim_of(values), degree, point_count));
           },
           py::arg("parameters"), py::arg("values"), py::arg("degree"), py::arg("point_count"),
           WithoutGil(),
@@ -120,12 +123,13 @@ void add_fits(py::module_& module) {
       .def(
           "reduce_data",
           [](const Array& times, const Array& values, double tolerance, int degree) {
-            return take(curves::reduce_data(numbers(times), numbers(values), tolerance, degree));
+            return take(curves::reduce_data(parameters_of("times", times, values), numbers(values),
+                                            tolerance, degree, dim_of(values)));
           },
           py::arg("times"), py::arg("values"), py::arg("tolerance"), py::arg("degree") = 3,
           WithoutGil(),
           "A Fitted with few points, everywhere within tolerance of the straight lines between\n"
-          "values [n] at times [n]; max_error is proved.");
+          "values [n] or [n, dim] at times [n]; max_error is proved.");
 }
 
 }  // namespace knotwave::python

@@ -33,18 +33,14 @@ NurbsSurface make_surface(const Array& points, int degree_u, int degree_v,
   spec.degree_u = degree_u;
   spec.degree_v = degree_v;
   set_points(spec, points);
-  spec.weights = copied(weights);
-  spec.knots_u = copied(knots_u);
-  spec.knots_v = copied(knots_v);
+  if (weights) {
+    check_shape("weights", *weights, {points.shape(0), points.shape(1)});
+    spec.weights.assign(weights->data(), weights->data() + weights->size());
+  }
+  spec.knots_u = copied_row("knots_u", knots_u);
+  spec.knots_v = copied_row("knots_v", knots_v);
   spec.periodic_u = periodic_u;
   return take(NurbsSurface::create(std::move(spec)));
-}
-
-/// u and v with one shape.
-std::pair<Array, Array> broadcast(const Array& u, const Array& v) {
-  const py::object both = py::module_::import("numpy").attr("broadcast_arrays")(u, v);
-  const auto pair = py::reinterpret_borrow<py::sequence>(both);
-  return {Array::ensure(py::object(pair[0])), Array::ensure(py::object(pair[1]))};
 }
 
 py::object evaluate(const NurbsSurface& surface, const Array& u, const Array& v) {
@@ -64,7 +60,7 @@ py::object evaluate(const NurbsSurface& surface, const Array& u, const Array& v)
 
 py::array_t<double> grid(const NurbsSurface& surface, const Array& u, const Array& v) {
   py::array_t<double> out(with_dim({v.size(), u.size()}, surface.dim()));
-  const auto places_u = numbers(u), places_v = numbers(v);
+  const auto places_u = row("u", u), places_v = row("v", v);
   std::span<double> values = numbers(out);
   {
     const py::gil_scoped_release others_go_on;

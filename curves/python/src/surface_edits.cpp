@@ -19,7 +19,7 @@ Direction direction_of(std::string_view direction) {
 
 NurbsSurface lofted(const std::vector<NurbsCurve>& rows, int degree_v,
                     const std::optional<Array>& positions) {
-  return take(curves::lofted(rows, degree_v, copied(positions)));
+  return take(curves::lofted(rows, degree_v, copied_row("positions", positions)));
 }
 
 NurbsSurface bilinear(const Array& corners) {
@@ -59,7 +59,7 @@ void add_surface_edits(py::class_<NurbsSurface>& surface) {
       .def(
           "refine",
           [](const NurbsSurface& self, std::string_view direction, const Array& knots) {
-            return take(curves::refine(self, direction_of(direction), numbers(knots)));
+            return take(curves::refine(self, direction_of(direction), row("knots", knots)));
           },
           py::arg("direction"), py::arg("knots"), WithoutGil(),
           "The same surface with all of knots [m], in any order.")

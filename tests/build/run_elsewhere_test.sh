@@ -42,5 +42,5 @@ expect build "CLI11 gtest"
 have pkg-config "exit 0"
 for tool in clang++-14 clang-tidy-14 midicsv objdump git; do have "$tool" "exit 0"; done
 have python3 "exit 1"  # without any module
-expect test "clang-format-14 python3-mpmath python3-numpy python3-pytest"
+expect test "clang-format-14 python3-mpmath python3-numpy python3-pytest python3-scipy"
 exit $failed

@@ -40,6 +40,37 @@ TEST(CCurve, HoldsWhatWasGiven) {
   EXPECT_EQ(count, 0u);
 }
 
+TEST(CCurve, CountsAboveTheLimitsAreRefusedBeforeAnythingIsRead) {
+  const double points[] = {0, 1};
+  for (const size_t count : {SIZE_MAX, size_t{1} << 61, size_t{16385}}) {
+    kw_curve_spec spec = KW_CURVE_SPEC_INIT;
+    spec.points = points;
+    spec.points_count = count;
+    const Failure failure = refused<kw_curve>(kw_curve_create, &spec);
+    EXPECT_EQ(failure.status, KW_TOO_MANY_POINTS);
+    EXPECT_EQ(failure.message, "the spec's points_count is " + std::to_string(count) +
+                                   ", at most 16384 are possible");
+    spec.points_count = 2;
+    spec.knots = points;
+    spec.knots_count = count;
+    EXPECT_EQ(refused<kw_curve>(kw_curve_create, &spec).status, KW_TOO_MANY_POINTS);
+    kw_surface_spec surface = KW_SURFACE_SPEC_INIT;
+    surface.points = points;
+    surface.points_count = count;
+    EXPECT_EQ(refused<kw_surface>(kw_surface_create, &surface).status, KW_TOO_MANY_POINTS);
+  }
+}
+
+TEST(CCurve, OfNothingTheCountIs0) {
+  using Lender = const double* (*)(const kw_curve*, size_t*);
+  const Lender lenders[] = {kw_curve_points, kw_curve_weights, kw_curve_knots, kw_curve_jumps};
+  for (const Lender lender : lenders) {
+    size_t count = 7;
+    EXPECT_EQ(lender(nullptr, &count), nullptr);
+    EXPECT_EQ(count, 0u);
+  }
+}
+
 TEST(CCurve, OutlivesWhatItWasMadeFrom) {
   Curve curve = curve_of(bell());
   const Curve copy = made<Curve>(kw_curve_copy, curve.get());

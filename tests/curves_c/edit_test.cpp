@@ -59,6 +59,30 @@ TEST_F(CEdit, SplitGivesBothPartsOrNone) {
   EXPECT_EQ(left, nullptr);
 }
 
+TEST_F(CEdit, TwoOutputsAtOnePlaceAreRefused) {
+  kw_curve* out = nullptr;
+  kw_error* error = nullptr;
+  EXPECT_EQ(kw_curve_split(b_, 0.4, &out, &out, &error), KW_MALFORMED);
+  const Fault fault(error);
+  EXPECT_STREQ(kw_error_message(error), "both outputs are one place: give each its own");
+  EXPECT_EQ(kw_curve_make_compatible(b_, p_, &out, &out, nullptr), KW_MALFORMED);
+  EXPECT_EQ(out, nullptr);
+}
+
+TEST_F(CEdit, CountsThatNoArrayHasAreRefused) {
+  const double knot = 0.5;
+  const double* const one = &knot;
+  const Failure endless = refused<kw_curve>(kw_curve_refine, b_, one, size_t{1} << 61);
+  EXPECT_EQ(endless.status, KW_VALUE_OUT_OF_RANGE);
+  EXPECT_EQ(endless.message,
+            "'knots' cannot have 2305843009213693952 elements: no memory holds them");
+  const Failure many = refused<kw_curve>(kw_curve_refine, b_, one, size_t{4113});
+  EXPECT_EQ(many.status, KW_TOO_MANY_POINTS);
+  EXPECT_EQ(many.message, "knots_count is 4113, at most 4112 are possible");
+  EXPECT_EQ(refused<kw_curve>(kw_curve_interpolate, one, SIZE_MAX, 1, 3, KW_SPACING_CHORD).status,
+            KW_VALUE_OUT_OF_RANGE);
+}
+
 TEST_F(CEdit, WhatMakesItSmallerSaysByHowMuch) {
   kw_curve* out = nullptr;
   int32_t removed = -1;

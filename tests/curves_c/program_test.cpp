@@ -112,6 +112,14 @@ TEST_F(CProgram, ControlsMoveWhatWasDeclared) {
   }
   EXPECT_EQ(kw_program_render_controlled(program.get(), u, 3, both, 2, 0, out, 3, nullptr),
             KW_DIMENSION_MISMATCH);
+  const kw_control_range reserved = {KW_CONTROL_WEIGHT, 2, 0, 5, 0.5, 8};
+  options.controls = &reserved;
+  EXPECT_EQ(refused<kw_program>(kw_compile_function, curve_.get(), &options).message,
+            "control 0: reserved is 5, not 0");
+  options.controls_count = SIZE_MAX;
+  EXPECT_EQ(refused<kw_program>(kw_compile_function, curve_.get(), &options).message,
+            "18446744073709551615 controls, at most 8 are allowed");
+  options.controls_count = 1;
   const kw_control_range unknown = {2, 2, 0, 0, 0.5, 8};
   options.controls = &unknown;
   EXPECT_EQ(refused<kw_program>(kw_compile_function, curve_.get(), &options).status,

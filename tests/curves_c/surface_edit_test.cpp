@@ -103,6 +103,11 @@ TEST(CSurfaceEdit, FaultsMakeNothingAndSayWhy) {
   kw_surface *low = nullptr, *high = nullptr;
   EXPECT_EQ(kw_surface_split(ours.get(), 0, 2, &low, &high, nullptr), KW_PARAMETER_OUT_OF_RANGE);
   EXPECT_EQ(kw_surface_split(ours.get(), 0, 0.5, nullptr, &high, nullptr), KW_MALFORMED);
+  EXPECT_EQ(kw_surface_split(ours.get(), 0, 0.5, &low, &low, nullptr), KW_MALFORMED);
+  const double knot = 0.5;
+  const double* const one = &knot;
+  EXPECT_EQ(refused<kw_surface>(kw_surface_refine, ours.get(), 0, one, size_t{1} << 61).message,
+            "knots_count is 2305843009213693952, at most 4112 are possible");
   EXPECT_EQ(low, nullptr);
   EXPECT_EQ(high, nullptr);
 }

@@ -70,6 +70,8 @@ TEST(CTessellate, FaultsAreToldAndNothingIsCalled) {
   };
   EXPECT_EQ(message({3, 0, 1, 1}, KW_VALUE_OUT_OF_RANGE),
             "the sampling method is 3, no number of 0 to 2");
+  EXPECT_EQ(message({KW_SAMPLING_MAX_STEP, 5, 1, 0}, KW_VALUE_OUT_OF_RANGE),
+            "the sampling's reserved is 5, not 0");
   EXPECT_EQ(message({KW_SAMPLING_MAX_STEP, 0, 0, 0}, KW_VALUE_OUT_OF_RANGE),
             "curve 'bell': size = 0 is not positive and finite");
   message({KW_SAMPLING_FIXED_STEP, 0, 100, 0}, KW_TOO_MANY_POINTS);

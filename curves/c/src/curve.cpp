@@ -61,6 +61,14 @@ kw_status kw_curve_create(const kw_curve_spec* spec, kw_curve** out, kw_error** 
     if (absent != nullptr) {
       return fail(ErrorCode::malformed, std::string("the spec's ") + absent + " are NULL");
     }
+    constexpr size_t kMostPoints = KW_MAX_POINTS;
+    for (const auto& fault :
+         {count_fault("the spec's points_count", spec->points_count, kMostPoints * KW_MAX_DIM),
+          count_fault("the spec's weights_count", spec->weights_count, kMostPoints),
+          count_fault("the spec's knots_count", spec->knots_count, kMostKnots),
+          count_fault("the spec's jumps_count", spec->jumps_count, kMostKnots)}) {
+      if (fault) return *fault;
+    }
     curves::CurveSpec made;
     made.name = text_of(spec->name);
     made.degree = spec->degree;

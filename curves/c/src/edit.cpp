@@ -42,7 +42,11 @@ kw_status kw_curve_insert_knot(const kw_curve* curve, double u, int32_t times, k
 kw_status kw_curve_refine(const kw_curve* curve, const double* knots, size_t knots_count,
                           kw_curve** out, kw_error** error) {
   return make_curve({{"curve", curve}, array("knots", knots, knots_count)}, out, error,
-                    [&] { return curves::refine(curve->curve, numbers(knots, knots_count)); });
+                    [&]() -> Result<NurbsCurve> {
+                      auto fault = count_fault("knots_count", knots_count, kMostKnots);
+                      if (fault) return *std::move(fault);
+                      return curves::refine(curve->curve, numbers(knots, knots_count));
+                    });
 }
 kw_status kw_curve_elevate_degree(const kw_curve* curve, int32_t times, kw_curve** out,
                                   kw_error** error) {

@@ -52,11 +52,17 @@ kw_status report(kw_error** error, kw_status status, std::string_view message) n
 struct Needed {
   const char* name;
   const void* pointer;
+  size_t count = 0;  ///< of the elements, for an array
 };
 /// An array is needed where its count is not 0.
 inline Needed array(const char* name, const void* pointer, size_t count) {
-  return {name, count == 0 ? name : pointer};
+  return {name, count == 0 ? name : pointer, count};
 }
+/// The first with more elements of 8 bytes than memory can have, or null.
+const Needed* endless(std::initializer_list<Needed> needed) noexcept;
+/// Something of a curve that is counted: more than `most` is too_many_points.
+std::optional<Error> count_fault(const char* what, size_t count, size_t most);
+inline constexpr size_t kMostKnots = KW_MAX_POINTS + KW_MAX_DEGREE + 1;
 /// The first that is null, or null.
 const char* missing(std::initializer_list<Needed> needed) noexcept;
 
@@ -81,6 +87,11 @@ kw_status run(std::initializer_list<Needed> needed, kw_error** error, Work&& wor
     return report(error, KW_NULL_ARGUMENT, std::string_view(name));
   }
   try {
+    if (const Needed* one = endless(needed)) {
+      return report(error, KW_VALUE_OUT_OF_RANGE,
+                    "'" + std::string(one->name) + "' cannot have " + std::to_string(one->count) +
+                        " elements: no memory holds them");
+    }
     return work();
   } catch (const std::bad_alloc&) {
     return KW_OUT_OF_MEMORY;
@@ -135,6 +146,9 @@ kw_status make_curve(std::initializer_list<Needed> needed, kw_curve** out, kw_er
   });
 }
 
+/// For two outputs at one place: the first would be lost.
+Error one_place_for_two();
+
 /// A call that makes two curves or none.
 struct TwoCurves {
   curves::NurbsCurve first;
@@ -149,6 +163,7 @@ kw_status make_two_curves(std::initializer_list<Needed> needed, kw_curve** out_f
     if (out_first == nullptr || out_second == nullptr) {
       return report(error, KW_NULL_ARGUMENT, out_first == nullptr ? "first out" : "second out");
     }
+    if (out_first == out_second) return report(error, one_place_for_two());
     return give(work(), error, [&](TwoCurves&& both) {
       auto first = std::make_unique<kw_curve>(kw_curve{std::move(both.first)});
       *out_second = new kw_curve{std::move(both.second)};

@@ -32,12 +32,21 @@ Result<CompileOptions> c::compile_options_of(const kw_compile_options* options) 
   if (options->controls == nullptr && options->controls_count > 0) {
     return fail(ErrorCode::malformed, "the options' controls are NULL");
   }
+  if (options->controls_count > size_t{curves::kMaxControls}) {
+    return fail(ErrorCode::value_out_of_range,
+                std::to_string(options->controls_count) + " controls, at most " +
+                    std::to_string(curves::kMaxControls) + " are allowed");
+  }
   made.max_error = options->max_error;
   made.max_pieces = options->max_pieces;
   for (size_t i = 0; i < options->controls_count; ++i) {
     const kw_control_range& from = options->controls[i];
     if (from.kind < 0 || from.kind > KW_CONTROL_KNOT) {
       return unknown_choice("the kind of a control", from.kind, std::size(kKinds));
+    }
+    if (from.reserved != 0) {
+      return fail(ErrorCode::value_out_of_range, "control " + std::to_string(i) + ": reserved is " +
+                                                     std::to_string(from.reserved) + ", not 0");
     }
     made.controls.push_back({kKinds[from.kind], from.point, from.coordinate, from.low, from.high});
   }

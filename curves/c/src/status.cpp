@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Errors, texts and numbers as C holds them.
+#include <cstdint>
 #include <cstring>
 
 #include "handles.h"
@@ -102,6 +103,25 @@ const char* missing(std::initializer_list<Needed> needed) noexcept {
     if (one.pointer == nullptr) return one.name;
   }
   return nullptr;
+}
+
+const Needed* endless(std::initializer_list<Needed> needed) noexcept {
+  constexpr size_t kMost = PTRDIFF_MAX / sizeof(double);
+  for (const Needed& one : needed) {
+    if (one.count > kMost) return &one;
+  }
+  return nullptr;
+}
+
+std::optional<Error> count_fault(const char* what, size_t count, size_t most) {
+  if (count <= most) return std::nullopt;
+  return fail(ErrorCode::too_many_points, std::string(what) + " is " + std::to_string(count) +
+                                              ", at most " + std::to_string(most) +
+                                              " are possible");
+}
+
+Error one_place_for_two() {
+  return fail(ErrorCode::malformed, "both outputs are one place: give each its own");
 }
 
 char* new_text(std::string_view text) {

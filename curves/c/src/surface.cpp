@@ -21,6 +21,14 @@ Result<NurbsSurface> surface_of(const kw_surface_spec& spec) {
   if (absent != nullptr) {
     return fail(ErrorCode::malformed, std::string("the spec's ") + absent + " are NULL");
   }
+  constexpr size_t kMostPoints = KW_MAX_POINTS;
+  for (const auto& fault :
+       {count_fault("the spec's points_count", spec.points_count, kMostPoints * KW_MAX_DIM),
+        count_fault("the spec's weights_count", spec.weights_count, kMostPoints),
+        count_fault("the spec's knots_u_count", spec.knots_u_count, kMostKnots),
+        count_fault("the spec's knots_v_count", spec.knots_v_count, kMostKnots)}) {
+    if (fault) return *fault;
+  }
   curves::SurfaceSpec made;
   made.name = text_of(spec.name);
   made.degree_u = spec.degree_u;

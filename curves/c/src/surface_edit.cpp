@@ -44,10 +44,13 @@ kw_status kw_surface_insert_knot(const kw_surface* surface, kw_direction directi
 }
 kw_status kw_surface_refine(const kw_surface* surface, kw_direction direction, const double* knots,
                             size_t knots_count, kw_surface** out, kw_error** error) {
-  return edit(
-      surface, direction, out, error,
-      [&](Direction along) { return refine(surface->surface, along, numbers(knots, knots_count)); },
-      {array("knots", knots, knots_count)});
+  return edit(surface, direction, out, error,
+              [&](Direction along) -> Result<NurbsSurface> {
+                auto fault = count_fault("knots_count", knots_count, kMostKnots);
+                if (fault) return *std::move(fault);
+                return refine(surface->surface, along, numbers(knots, knots_count));
+              },
+              {array("knots", knots, knots_count)});
 }
 kw_status kw_surface_elevate_degree(const kw_surface* surface, kw_direction direction,
                                     int32_t times, kw_surface** out, kw_error** error) {
@@ -66,6 +69,7 @@ kw_status kw_surface_split(const kw_surface* surface, kw_direction direction, do
   const kw_status status =
       edit(surface, direction, out_high, error, [&](Direction along) -> Result<NurbsSurface> {
         if (out_low == nullptr) return fail(ErrorCode::malformed, "out_low is NULL");
+        if (out_low == out_high) return one_place_for_two();
         auto parts = split(surface->surface, along, at);
         if (!parts) return std::move(parts).error();
         low = std::make_unique<kw_surface>(kw_surface{std::move(parts->low)});

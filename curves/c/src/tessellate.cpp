@@ -10,6 +10,10 @@ using namespace knotwave::c;
 namespace {
 
 Result<curves::Sampling> sampling_of(const kw_sampling& from) {
+  if (from.reserved != 0) {
+    return fail(ErrorCode::value_out_of_range,
+                "the sampling's reserved is " + std::to_string(from.reserved) + ", not 0");
+  }
   switch (from.method) {
     case KW_SAMPLING_FIXED_STEP:
       return curves::Sampling(curves::FixedStep{from.amount});

@@ -14,7 +14,8 @@
 //   left as they were), and if `error` is not NULL, *error is an object with a sentence to act on,
 //   which the caller frees. On success *error is NULL. What *out and *error held before is
 //   overwritten, never freed.
-// - What a handle is asked for without a status is 0, NULL or false if the handle is NULL.
+// - What a handle is asked for without a status is 0, NULL or false if the handle is NULL; where it
+//   is NULL, *count is 0. A handle that was freed must not be used or freed again.
 // - Arrays are a pointer and a count of their elements (for coordinates: of numbers, not of
 //   points). A pointer may be NULL where its count is 0. Output arrays must have exactly the count
 //   that is stated, or the call fails with KW_DIMENSION_MISMATCH and writes nothing.

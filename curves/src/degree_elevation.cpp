@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Degree elevation is the product with a 1 of that degree: point j of degree p + t is the mean of
 // f over its p + t knots, each t of them left out once (A5.9 goes by way of Bézier segments).
-#include <algorithm>
+#include <cstdint>
+#include <string>
 
 #include "knotwave/curves/algorithms.h"
 
@@ -15,8 +16,13 @@ Result<NurbsCurve> elevate_degree(const NurbsCurve& curve, int times) {
                                                    "': a degree cannot be elevated " +
                                                    std::to_string(times) + " times");
   }
-  // Beyond any degree there is, so that no sum of the two overflows.
-  return times == 0 ? curve : multiply_by_one(curve, std::min(times, kMaxDegree));
+  if (times > kMaxDegree - curve.degree()) {
+    return fail(ErrorCode::degree_out_of_range,
+                "curve '" + curve.name() + "': degree " +
+                    std::to_string(std::int64_t{curve.degree()} + times) + " is outside 1.." +
+                    std::to_string(kMaxDegree));
+  }
+  return times == 0 ? curve : multiply_by_one(curve, times);
 }
 
 }  // namespace knotwave::curves

@@ -12,13 +12,12 @@ namespace {
 using base::index_of;
 int degree_of(std::span<const DoubleDouble> a) { return static_cast<int>(a.size()) - 1; }
 
-/// What sign_changes() works with.
-struct Search {
-  const Bernstein& whole;
-  double noise;  ///< coefficients up to this are rounding
-  std::vector<double>& found;
-
-  int sign(DoubleDouble x) const { return x.hi > noise ? 1 : x.hi < -noise ? -1 : 0; }
+/// A polynomial over [low, high] that sign_changes() looks at.
+struct Part {
+  Bernstein of;
+  Bernstein noise;  ///< each coefficient up to this is rounding
+  double low = 0;
+  double high = 1;
 };
 
 struct Signs {
@@ -27,11 +26,12 @@ struct Signs {
   int changes = 0;
 };
 
-Signs signs_of(const Search& search, const Bernstein& part) {
+Signs signs_of(const Part& part) {
   Signs signs;
-  for (const DoubleDouble& x : part) {
-    const int sign = search.sign(x);
-    if (sign == 0) continue;
+  for (std::size_t i = 0; i < part.of.size(); ++i) {
+    const double x = part.of[i].hi;
+    if (std::abs(x) <= part.noise[i].hi) continue;
+    const int sign = x > 0 ? 1 : -1;
     if (signs.first == 0) signs.first = sign;
     if (signs.last != 0 && sign != signs.last) ++signs.changes;
     signs.last = sign;
@@ -39,36 +39,37 @@ Signs signs_of(const Search& search, const Bernstein& part) {
   return signs;
 }
 
-double bisect(const Search& search, double low, double high, int sign_below) {
-  constexpr int kSteps = 54;
-  for (int i = 0; i < kSteps; ++i) {
+double bisect(const Bernstein& whole, double low, double high, int sign_below) {
+  constexpr int kMostSteps = 120;  // 54 for a root beyond 1/2, more towards 0
+  for (int i = 0; i < kMostSteps && high - low > 0x1p-54 * high; ++i) {
     const double middle = 0.5 * (low + high);
-    const double value = scaled_value(search.whole, middle).hi;
+    const double value = scaled_value(whole, middle).hi;
     const bool below = sign_below > 0 ? value > 0 : value < 0;
     (below ? low : high) = middle;
   }
   return high;
 }
 
-void search_part(const Search& search, Bernstein part, double low, double high) {
-  const Signs signs = signs_of(search, part);
+void search_part(const Bernstein& whole, Part part, std::vector<double>& found) {
+  const Signs signs = signs_of(part);
   if (signs.changes == 0) return;
   if (signs.changes == 1) {
-    search.found.push_back(bisect(search, low, high, signs.first));
+    found.push_back(bisect(whole, part.low, part.high, signs.first));
     return;
   }
-  const double middle = 0.5 * (low + high);
-  constexpr double kShortest = 0x1p-50;
-  if (high - low <= kShortest) {
-    search.found.push_back(middle);
+  const double middle = 0.5 * (part.low + part.high);
+  constexpr double kShortest = 0x1p-50, kFirst = 0x1p-64;
+  if (part.high - part.low <= std::max(kShortest * part.high, kFirst)) {
+    found.push_back(middle);
     return;
   }
-  Bernstein right = halve(part);
-  const int before = signs_of(search, part).last, after = signs_of(search, right).first;
-  search_part(search, std::move(part), low, middle);
+  Part right{halve(part.of), halve(part.noise), middle, part.high};
+  part.high = middle;
+  const int before = signs_of(part).last, after = signs_of(right).first;
+  search_part(whole, std::move(part), found);
   // A root on the cut is in neither half.
-  if (before * after < 0) search.found.push_back(middle);
-  search_part(search, std::move(right), middle, high);
+  if (before * after < 0) found.push_back(middle);
+  search_part(whole, std::move(right), found);
 }
 
 }  // namespace
@@ -161,12 +162,12 @@ Bernstein part_of(Bernstein a, DoubleDouble t0, DoubleDouble t1) {
   return a;
 }
 
-DoubleDouble scaled_value(std::span<const DoubleDouble> a, double t) noexcept {
+DoubleDouble scaled_value(std::span<const DoubleDouble> a, DoubleDouble t) noexcept {
   // Horner in t / (1 - t), or from the other end in (1 - t) / t: neither is above 1.
   const int n = degree_of(a);
-  const bool early = t <= 0.5;
-  const DoubleDouble rest = DoubleDouble::difference(1, t);
-  const DoubleDouble ratio = early ? DoubleDouble(t) / rest : rest / DoubleDouble(t);
+  const bool early = t.hi <= 0.5;
+  const DoubleDouble rest = DoubleDouble(1.0) - t;
+  const DoubleDouble ratio = early ? t / rest : rest / t;
   DoubleDouble sum = early ? a.back() : a.front();
   double choose = 1;
   for (int k = 1; k <= n; ++k) {
@@ -177,18 +178,26 @@ DoubleDouble scaled_value(std::span<const DoubleDouble> a, double t) noexcept {
 }
 
 DoubleDouble quotient_at(const Bernstein& numerator, const Bernstein& denominator,
-                         double t) noexcept {
-  if (t <= 0) return numerator.front() / denominator.front();
-  if (t >= 1) return numerator.back() / denominator.back();
+                         DoubleDouble t) noexcept {
+  if (t.hi <= 0) return numerator.front() / denominator.front();
+  if ((DoubleDouble(1.0) - t).hi <= 0) return numerator.back() / denominator.back();
   return scaled_value(numerator, t) / scaled_value(denominator, t);
 }
 
-std::vector<double> sign_changes(const Bernstein& a) {
-  double largest = 0;
-  for (const DoubleDouble& x : a) largest = std::max(largest, std::abs(x.hi));
+std::vector<double> sign_changes(const Bernstein& a, const Bernstein& terms) {
+  Bernstein noise = terms;
+  for (DoubleDouble& x : noise) x = DoubleDouble(0x1p-96 * x.hi);
   std::vector<double> found;
-  search_part({a, 0x1p-96 * largest, found}, a, 0, 1);
+  search_part(a, {a, std::move(noise)}, found);
   return found;
+}
+
+Bernstein derivative_terms(const Bernstein& w) {
+  Bernstein terms;
+  for (std::size_t i = 0; i + 1 < w.size(); ++i) {
+    terms.push_back((w[i + 1] + w[i]) * DoubleDouble(static_cast<double>(w.size() - 1)));
+  }
+  return terms;
 }
 
 }  // namespace knotwave::curves

@@ -25,15 +25,19 @@ std::vector<DoubleDouble> centered_powers(Bernstein a);
 Bernstein part_of(Bernstein a, DoubleDouble t0, DoubleDouble t1);
 
 /// Its value at t over max(t, 1-t)^degree: the sign, and quotients of equal degree, are right.
-DoubleDouble scaled_value(std::span<const DoubleDouble> a, double t) noexcept;
+DoubleDouble scaled_value(std::span<const DoubleDouble> a, DoubleDouble t) noexcept;
 /// numerator / denominator at t, of equal degree; at 0 and 1 the quotient of the end coefficients.
 DoubleDouble quotient_at(const Bernstein& numerator, const Bernstein& denominator,
-                         double t) noexcept;
+                         DoubleDouble t) noexcept;
 
-/// Every t in (0, 1) where the sign changes, in order, within 2^-53 of a place where a polynomial
-/// does whose coefficients are 2^-96 of the largest away. Found by variation diminishing: a part
-/// whose coefficients change sign once has one root, others are halved, down to 2^-50 (where roots
-/// stay together, the part counts as one place).
-std::vector<double> sign_changes(const Bernstein& a);
+/// Every t in (0, 1) where the sign changes, in order, within 2^-53 of t of a place where a
+/// polynomial does whose coefficients are 2^-96 of `terms` away: for each coefficient how large the
+/// terms are that it is the sum of. One bound for all would lose the roots where weights make the
+/// polynomial small. Found by variation diminishing: a part whose coefficients change sign once has
+/// one root, others are halved, down to 2^-50 of t or 2^-64 (where roots stay together, the part
+/// counts as one place).
+std::vector<double> sign_changes(const Bernstein& a, const Bernstein& terms);
+/// n (w_i + w_{i+1}): how large the terms of derivative() are for coefficients up to `w`.
+Bernstein derivative_terms(const Bernstein& w);
 
 }  // namespace knotwave::curves

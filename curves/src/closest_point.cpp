@@ -17,7 +17,7 @@ using base::number_text;
 /// A span seen from the point: its coordinates are offsets from there.
 using Offsets = std::vector<CoordinatePiece>;  // [dim]
 
-double distance_at(const Offsets& span, double t) {
+double distance_at(const Offsets& span, DoubleDouble t) {
   std::array<double, kMaxDim> offset{};
   for (std::size_t c = 0; c < span.size(); ++c) offset[c] = span[c].at(t).hi;
   return length_of(offset);
@@ -39,15 +39,33 @@ double least_distance(const Offsets& span) {
 }
 
 /// Where the square of the distance turns: sum over c of d_c d_c', times w^3 > 0.
-std::vector<double> feet(const Offsets& span, bool rational) {
+std::vector<double> feet(const Offsets& span, std::span<const double> point, bool rational) {
   Bernstein slope;
-  for (const CoordinatePiece& d : span) {
+  double scale = 0;  // of its terms, by those of the weights
+  for (std::size_t c = 0; c < span.size(); ++c) {
+    const CoordinatePiece& d = span[c];
+    const double most = d.largest();
+    scale += 4 * most * (most + 2 * std::abs(point[c]));
     const Bernstein along = derivative(d.numerator);
     const Bernstein share =
         d.numerator * (rational ? along * d.weight - d.numerator * derivative(d.weight) : along);
     slope = slope.empty() ? share : slope + share;
   }
-  return sign_changes(slope);
+  const Bernstein& weight = span.front().weight;
+  const Bernstein terms = Bernstein{DoubleDouble(scale)} * weight * derivative_terms(weight);
+  return sign_changes(slope, rational ? terms * weight : terms);
+}
+
+/// `best` or, if it is nearer, one of the doubles around the place t of the span.
+ClosestPoint nearer(const ClosestPoint& best, const Offsets& span, double t) {
+  const CoordinatePiece& piece = span.front();
+  const double u = piece.parameter(t);
+  ClosestPoint nearest = best;
+  for (const double at : {u, std::nextafter(u, piece.u0), std::nextafter(u, piece.u1)}) {
+    const double distance = distance_at(span, piece.place_of(at));
+    if (distance < nearest.distance) nearest = {at, distance};
+  }
+  return nearest;
 }
 
 std::vector<Offsets> offsets_from(const NurbsCurve& curve, std::span<const double> point) {
@@ -96,13 +114,10 @@ Result<ClosestPoint> closest_point(const NurbsCurve& curve, std::span<const doub
   for (const Offsets& span : spans) {
     constexpr double kRounding = 1 - 0x1p-50;
     if (least_distance(span) * kRounding > std::min(near, best.distance)) continue;
-    std::vector<double> places = feet(span, curve.is_rational());
+    std::vector<double> places = feet(span, point, curve.is_rational());
     places.insert(places.begin(), 0);
     places.push_back(1);
-    for (const double t : places) {
-      const double distance = distance_at(span, t);
-      if (distance < best.distance) best = {span.front().parameter(t), distance};
-    }
+    for (const double t : places) best = nearer(best, span, t);
   }
   return best;
 }

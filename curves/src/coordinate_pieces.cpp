@@ -2,6 +2,7 @@
 #include "coordinate_pieces.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "curve_distance.h"
 
@@ -11,6 +12,14 @@ double CoordinatePiece::parameter(double t) const noexcept {
   if (t <= 0) return u0;
   if (t >= 1) return u1;
   return (DoubleDouble(u0) + DoubleDouble(t) * DoubleDouble::difference(u1, u0)).hi;
+}
+
+double CoordinatePiece::largest() const noexcept {
+  double most = 0;
+  for (std::size_t j = 0; j < weight.size(); ++j) {
+    most = std::max(most, std::abs((numerator[j] / weight[j]).hi));
+  }
+  return most;
 }
 
 std::vector<CoordinatePiece> coordinate_pieces(const NurbsCurve& curve, int coordinate) {
@@ -53,8 +62,12 @@ std::vector<MonotonePart> monotone_parts(const std::vector<CoordinatePiece>& pie
       from_start[j] = from_start[j] - origin * piece.weight[j];
     }
     const Bernstein slope = derivative(from_start);
-    std::vector<double> turns = sign_changes(
-        rational ? slope * piece.weight - from_start * derivative(piece.weight) : slope);
+    const Bernstein scale = {DoubleDouble(2 * (piece.largest() + std::abs(origin.hi)))};
+    const Bernstein terms = scale * derivative_terms(piece.weight);
+    std::vector<double> turns =
+        rational ? sign_changes(slope * piece.weight - from_start * derivative(piece.weight),
+                                terms * piece.weight)
+                 : sign_changes(slope, terms);
     turns.push_back(1);
     double from = 0;
     for (const double to : turns) {

@@ -18,9 +18,15 @@ struct CoordinatePiece {
   Bernstein numerator;
   Bernstein weight;
 
-  DoubleDouble at(double t) const noexcept { return quotient_at(numerator, weight, t); }
+  DoubleDouble at(DoubleDouble t) const noexcept { return quotient_at(numerator, weight, t); }
   /// The ends are the knots themselves.
   double parameter(double t) const noexcept;
+  /// The other way, of u in [u0, u1].
+  DoubleDouble place_of(double u) const noexcept {
+    return DoubleDouble::difference(u, u0) / DoubleDouble::difference(u1, u0);
+  }
+  /// The largest magnitude of its Bézier points: |numerator| <= largest() * weight.
+  double largest() const noexcept;
 };
 std::vector<CoordinatePiece> coordinate_pieces(const NurbsCurve& curve, int coordinate);
 /// The part of a piece that lies in [low, high]; none where that is too short for a double.

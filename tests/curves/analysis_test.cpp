@@ -255,6 +255,80 @@ TEST(ClosestPoint, NoOtherPlaceOfARandomCurveIsNearer) {
   }
 }
 
+TEST(ClosestPoint, IsFoundWhereWeightsMakeAllElseSmall) {
+  // Expected: golden sections with mpmath at 60 digits.
+  CurveSpec spec;
+  spec.name = "heavy end";
+  spec.dim = 2;
+  spec.degree = 4;
+  spec.points = {9, -4, -1, 2, -4, -8, 0, -6, -2, 0};
+  spec.weights = {1e-6, 1e-3, 100, 1e4, 1e6};
+  const auto steep = closest_point(made(spec), std::vector<double>{5, -6});
+  ASSERT_TRUE(steep);
+  EXPECT_NEAR(steep->u, 2.6797807989315990628e-5, 1e-19);
+  EXPECT_NEAR(steep->distance, 1.3410453071215261800, 1e-15);
+  spec.degree = 3;
+  spec.points = {-2, -3, 8, -2, -4, 7, -8, -1};
+  spec.weights = {1e-6, 1e-6, 1e3, 1e6};
+  const auto slight = closest_point(made(spec), std::vector<double>{5, -3});
+  ASSERT_TRUE(slight);
+  EXPECT_NEAR(slight->u, 2.4999902073991038224e-9, 1e-22);
+  EXPECT_NEAR(slight->distance, 6.9999999625000974499, 2e-15);
+}
+
+TEST(ClosestPoint, NoPlaceIsNearerWhateverTheWeights) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < support::test_count(500); ++round) {
+    CurveSpec spec;
+    spec.name = "weighted";
+    spec.dim = 2;
+    spec.degree = dice.below(6) + 2;
+    for (int i = 0; i <= spec.degree; ++i) {
+      spec.points.push_back(dice.below(21) - 10);
+      spec.points.push_back(dice.below(21) - 10);
+      spec.weights.push_back(std::pow(10, dice.below(13) - 6));
+    }
+    const NurbsCurve curve = made(spec);
+    const std::vector<double> point = {double(dice.below(21) - 10), double(dice.below(21) - 10)};
+    const auto best = closest_point(curve, point);
+    ASSERT_TRUE(best);
+    // As dense towards the ends as in the middle, by ratios of 1.1.
+    for (double step = 0.5; step > 1e-16; step /= 1.1) {
+      for (const double u : {step, 1 - step}) {
+        double out[2];
+        curve.evaluate(u, Side::right, out);
+        ASSERT_GE(std::hypot(out[0] - point[0], out[1] - point[1]), best->distance - 1e-9)
+            << "round " << round << ", u = " << u << ", found " << best->u;
+      }
+    }
+  }
+}
+
+TEST(ClosestPoint, SaysTheDistanceAtTheNearestOfCoarseParameters) {
+  // Doubles are 2^-33 apart at 1e6, 32 of them to the span.
+  const double low = 1e6, step = 0x1p-33, high = low + 32 * step;
+  CurveSpec spec;
+  spec.name = "late";
+  spec.dim = 2;
+  spec.degree = 2;
+  spec.points = {0, 0, 1, 2, 2, 0};
+  spec.knots = {low, low, low, high, high, high};
+  const NurbsCurve curve = made(spec);
+  for (const double x : {0.01, 0.3, 0.52, 0.77, 1.0, 1.49, 1.98}) {
+    const auto found = closest_point(curve, std::vector<double>{x, 1});
+    ASSERT_TRUE(found);
+    const auto distance = [&](double u) {
+      double out[2];
+      curve.evaluate(u, Side::right, out);
+      return std::hypot(out[0] - x, out[1] - 1);
+    };
+    double least = kInfinity;
+    for (int i = 0; i <= 32; ++i) least = std::min(least, distance(low + i * step));
+    EXPECT_NEAR(found->distance, distance(found->u), 1e-15) << x;
+    EXPECT_NEAR(found->distance, least, 1e-15) << x;
+  }
+}
+
 TEST(BreaksOf, SayWhatJumpsFirst) {
   // A value's jump at 0.25, a corner at 0.5, a jump of curvature at 0.75.
   const NurbsCurve steps = scalar(1, {0, 1, 3, 4, 0}, {0, 0, 0.5, 0.5, 0.75, 1, 1}, {0.5});

@@ -41,9 +41,11 @@ struct SpanHull {
 std::vector<SpanHull> span_hulls(const NurbsCurve& curve, int coordinate = 0);
 
 /// Where the curve is nearest to `point` [dim], one place where several are; all feet of
-/// every span that its hull doesn't rule out are looked at, so no other span is nearer. Where the
-/// distance bends upwards u is right to 2^-48 of its span. Errors: dimension_mismatch, not_finite,
-/// coordinate_out_of_range (beyond kMaxCoordinate).
+/// every span that its hull doesn't rule out are looked at, so no other span is nearer. `distance`
+/// is that at `u` itself (of the nearer limit at a jump), and the doubles next to each foot are
+/// tried: where they are coarse, as at u = 1e6, u is the best of them. Where the distance bends
+/// upwards u is right to 2^-48 of its span or to the next double. Errors: dimension_mismatch,
+/// not_finite, coordinate_out_of_range (beyond kMaxCoordinate).
 struct ClosestPoint {
   double u = 0;
   double distance = 0;

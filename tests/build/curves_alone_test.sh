@@ -63,6 +63,22 @@ quietly "$cc" -std=c11 -Wall -Werror $(pkg-config --cflags knotwave-curves-c) "$
   $(pkg-config --libs knotwave-curves-c) "-Wl,-rpath,$libraries"
 check "pkg-config, C" "$("$work/c")"
 
+# The program, the CMakeLists.txt and the command that docs/curves.md prints.
+mkdir "$work/page"
+# block LANGUAGE: the first of it after the heading.
+block() {
+  awk -v mark="\`\`\`$1" '/^## Use it in your program/ { here = 1 } here && $0 == mark && !done { on = 1; next }
+    /^```/ { if (on) done = 1; on = 0 } on' "$source/docs/curves.md"
+}
+block cpp >"$work/page/bell.cpp"
+block cmake >"$work/page/CMakeLists.txt"
+block text >"$work/page/wanted"
+block sh >"$work/page/build.sh"
+quietly cmake -S "$work/page" -B "$work/page/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$cxx"
+quietly cmake --build "$work/page/build"
+diff "$work/page/wanted" <("$work/page/build/bell")
+(cd "$work/page" && sed -i "s|^c++ |$cxx |" build.sh && quietly bash -e build.sh && diff wanted <(./bell))
+
 if cmake -S "$source" -B "$work/wrong" -G Ninja -DKNOTWAVE_MODULES=curve >"$work/log" 2>&1; then
   echo "a module that is not there was built"; exit 1
 fi

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "knotwave/base/document.h"
@@ -11,6 +12,7 @@
 #include "knotwave/curves/algorithms.h"
 
 #include "coordinate_pieces.h"
+#include "length.h"
 #include "quadrature.h"
 #include "spec_checks.h"
 
@@ -101,22 +103,23 @@ double curvature(const NurbsCurve& curve, double u, Side side) noexcept {
   const auto dim = index_of(curve.dim());
   const double* first = at.data() + dim;
   const double* second = first + dim;
+  constexpr double kMost = std::numeric_limits<double>::max();
   if (dim == 1) {
-    const double speed = std::sqrt(1 + first[0] * first[0]);
-    return second[0] / speed / speed / speed;
+    const double speed = std::min(length_of(std::array{1.0, first[0]}), kMost);
+    return std::clamp(second[0] / speed / speed / speed, -kMost, kMost);
   }
-  double square = 0, turn = 0;
-  for (std::size_t c = 0; c < dim; ++c) square += first[c] * first[c];
-  const double speed = std::sqrt(square);
+  const double speed = std::min(length_of(std::span(first, dim)), kMost);
   if (speed == 0) return 0;
+  std::array<double, kMaxDim*(kMaxDim - 1) / 2> areas{};  // halves, which are no larger than C''
+  std::size_t planes = 0;
   // |C' x C''| from its parts in each plane.
   for (std::size_t c = 0; c < dim; ++c) {
     for (std::size_t d = c + 1; d < dim; ++d) {
-      const double area = first[c] / speed * second[d] - first[d] / speed * second[c];
-      turn = dim == 2 ? area : turn + area * area;
+      areas[planes++] = first[c] / speed * (second[d] / 2) - first[d] / speed * (second[c] / 2);
     }
   }
-  return (dim == 2 ? turn : std::sqrt(turn)) / speed / speed;
+  const double turn = dim == 2 ? areas[0] : length_of(areas);
+  return std::clamp(2 * (turn / speed / speed), -kMost, kMost);
 }
 
 }  // namespace knotwave::curves

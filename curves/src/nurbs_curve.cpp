@@ -94,48 +94,6 @@ void NurbsCurve::evaluate(double u, Side side, std::span<double> out) const noex
   }
 }
 
-void NurbsCurve::derivatives(double u, int order, Side side, std::span<double> out) const noexcept {
-  const int p = degree_;
-  u = KnotDomain{u_min(), u_max(), periodic_}.place(u, side);
-  const int span = find_span(knots_, p, u, side);
-  const SpanBasis basis(KnotSequence{knots_, p, periodic_}, span, u);
-  std::fill_n(out.begin(), index_of((order + 1) * dim_), 0.0);
-  evaluate(u, side, out.first(index_of(dim_)));
-
-  // Derivatives of numerator and denominator; 0 above the degree. The numerator is seen from C(u),
-  // so an offset of the curve costs no digits.
-  DoubleDouble sums[kMaxDegree + 1][kMaxDim + 1];
-  for (int k = 0; k <= std::min(order, p); ++k) {
-    DoubleDouble share[kMaxDegree + 1];
-    basis.derivative(k, share);
-    for (int r = 0; r <= p; ++r) {
-      const int i = span - p + r;
-      if (rational_) share[r] = share[r] * weights_[index_of(i)];
-      for (int c = 0; c < dim_; ++c) {
-        const double point = points_[index_of(i * dim_ + c)];
-        sums[k][c] += share[r] * DoubleDouble::difference(point, out[index_of(c)]);
-      }
-      sums[k][dim_] += share[r];
-    }
-  }
-  // A4.2: C_k = (A_k - sum binomial(k, i) w_i C_{k-i}) / w_0, i <= p as higher w_i are 0.
-  DoubleDouble past[kMaxDegree + 1][kMaxDim];  // C_j at index j mod (p + 1); C_0 is about 0
-  for (int c = 0; c < dim_; ++c) past[0][c] = sums[0][c] / sums[0][dim_];
-  for (int k = 1; k <= order; ++k) {
-    for (int c = 0; c < dim_; ++c) {
-      DoubleDouble value = k <= p ? sums[k][c] : DoubleDouble(0.0);
-      double binomial = 1.0;
-      for (int i = 1; rational_ && i <= std::min(k, p); ++i) {
-        binomial = binomial * static_cast<double>(k - i + 1) / static_cast<double>(i);
-        value = value - past[(k - i) % (p + 1)][c] * (sums[i][dim_] * binomial);
-      }
-      value = value / sums[0][dim_];
-      past[k % (p + 1)][c] = value;
-      out[index_of(k * dim_ + c)] = value.hi;
-    }
-  }
-}
-
 int find_span(std::span<const double> knots, int degree, double u, Side side) noexcept {
   return span_of(knots, degree, u, side);
 }

@@ -24,15 +24,16 @@ SpanBasis::SpanBasis(const KnotSequence& knots, int span, double u) noexcept
   }
 }
 
-void SpanBasis::derivative(int k, std::span<DoubleDouble> out) const noexcept {
+void SpanBasis::derivative(int k, std::span<DoubleDouble> out, double unit) const noexcept {
   // A curve's derivative has the points q (P_{i+1} - P_i) / (its knots' distance), q the degree
   // before: so each step hands a basis function of degree q - 1 to its two neighbours of degree q.
   for (int r = 0; r <= degree_ - k; ++r) out[static_cast<std::size_t>(r)] = rows[degree_ - k][r];
   for (int q = degree_ - k + 1; q <= degree_; ++q) {
     DoubleDouble from_left = 0.0;
     for (int r = 0; r < q; ++r) {
-      const DoubleDouble part =
-          out[static_cast<std::size_t>(r)] * static_cast<double>(q) / support(q, r);
+      const DoubleDouble length = support(q, r);
+      const DoubleDouble part = out[static_cast<std::size_t>(r)] * static_cast<double>(q) /
+                                DoubleDouble(unit * length.hi, unit * length.lo);
       out[static_cast<std::size_t>(r)] = from_left - part;
       from_left = part;
     }

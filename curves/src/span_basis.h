@@ -15,8 +15,11 @@ struct SpanBasis {
 
   SpanBasis(const KnotSequence& knots, int span, double u) noexcept;
 
-  /// The k-th derivatives of the degree + 1 basis functions, k <= degree, to out[degree+1] (A2.3).
-  void derivative(int k, std::span<DoubleDouble> out) const noexcept;
+  /// The k-th derivatives of the degree + 1 basis functions, k <= degree, to out[degree+1] (A2.3),
+  /// by u * unit, `unit` a power of two.
+  void derivative(int k, std::span<DoubleDouble> out, double unit = 1) const noexcept;
+  /// Of the span.
+  double length() const noexcept { return support(1, 0).hi; }
 
  private:
   /// Length of the support of rows[k-1][r], which divides it on the way to degree k.

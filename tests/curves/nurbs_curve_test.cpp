@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "knotwave/base/index.h"
+#include "knotwave/curves/calculus.h"
 
 #include "example_curve.h"
 #include "random_curve.h"
@@ -49,6 +50,42 @@ std::vector<double> derivatives_at(const NurbsCurve& curve, double u, int order,
   std::vector<double> out(index_of((order + 1) * curve.dim()));
   curve.derivatives(u, order, side, out);
   return out;
+}
+
+TEST(NurbsCurveDerivatives, BeyondAllDoublesAreTheLargestOne) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  const auto bell = NurbsCurve::create(spec_of(4, 1, {0, 0, 1, 0, 0}, {}, {1, 1, 4, 1, 1}));
+  ASSERT_TRUE(bell);
+  const auto many = derivatives_at(*bell, 0.4, 1000);
+  for (const double x : many) ASSERT_TRUE(std::isfinite(x));
+  EXPECT_EQ(std::abs(many[1000]), kMost);
+  EXPECT_LT(std::abs(many[100]), kMost) << "about 1e158 * 0.5^-100";
+  for (const double x : derivatives_at(*bell, 0.5, 200)) ASSERT_TRUE(std::isfinite(x));
+
+  const std::vector<double> short_knots = {0, 0, 0, 0, 1e-200, 1e-200, 1e-200, 1e-200};
+  const auto steep = NurbsCurve::create(spec_of(3, 1, {1, -1, 1, 0}, short_knots));
+  ASSERT_TRUE(steep);
+  const auto few = derivatives_at(*steep, 0, 5);
+  EXPECT_EQ(few[0], 1);
+  EXPECT_NEAR(few[1] / 1e200, -6, 1e-14);
+  EXPECT_EQ(few[2], kMost) << "24e400";
+  EXPECT_EQ(few[3], -kMost) << "-42e600";
+  EXPECT_EQ(few[4], 0);
+  EXPECT_EQ(few[5], 0);
+  EXPECT_TRUE(std::isfinite(curves::curvature(*steep, 0)));
+}
+
+// 1 / (1 + u) has the derivatives (-1)^k k! / (1 + u)^(k + 1).
+TEST(NurbsCurveDerivatives, AreRightUpToTheLargestDouble) {
+  const auto falling = NurbsCurve::create(spec_of(1, 1, {1, 0.5}, {}, {1, 2}));
+  ASSERT_TRUE(falling);
+  const auto rows = derivatives_at(*falling, 0, 180);
+  double factorial = 1;
+  for (int k = 1; k <= 170; ++k) {
+    factorial *= k;
+    EXPECT_NEAR(rows[index_of(k)] / factorial, k % 2 == 0 ? 1 : -1, 1e-13) << k;
+  }
+  EXPECT_EQ(rows[171], -std::numeric_limits<double>::max()) << "171! is above all doubles";
 }
 
 // ---- published examples ----------------------------------------------------------------------

@@ -48,7 +48,8 @@ Result<double> parameter_at_length(const NurbsCurve& curve, double length);
 
 /// Signed curvature of a 2-D curve (left turns positive), or that of the graph (u, C(u)) of a
 /// scalar one; unsigned for more coordinates. [any] The side matters at a knot. 0 where a path
-/// stands still. No allocation.
+/// stands still. Where derivatives are beyond all doubles it is of the right sign or 0, no more;
+/// never infinite or NaN. No allocation.
 double curvature(const NurbsCurve& curve, double u, Side side = Side::right) noexcept;
 
 }  // namespace knotwave::curves

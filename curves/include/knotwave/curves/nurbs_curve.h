@@ -80,7 +80,9 @@ class NurbsCurve {
   void evaluate(double u, Side side, std::span<double> out) const noexcept;
 
   /// C and its first `order` derivatives by u to out[(order+1)*dim], value first. [any] Correct
-  /// for weights (A4.2); order may exceed the degree. Not by time: multiply by du/dt yourself.
+  /// for weights (A4.2); order may exceed the degree. A derivative beyond all doubles (order 136 of
+  /// some, order 2 on a span of 1e-200) is the largest double with its sign, never NaN. Not by
+  /// time: multiply by du/dt yourself.
   void derivatives(double u, int order, Side side, std::span<double> out) const noexcept;
 
   friend bool operator==(const NurbsCurve&, const NurbsCurve&) = default;

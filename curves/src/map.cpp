@@ -18,6 +18,13 @@ std::size_t index_of(Target target) KNOTWAVE_RT { return static_cast<std::size_t
 /// Nodes of a grid that are worked on together.
 constexpr std::size_t kNodes = 64;
 
+Result<void> check_target(Target target) {
+  if (is_target(target)) return {};
+  return fail(ErrorCode::value_out_of_range,
+              "map: target " + std::to_string(static_cast<int>(target)) + " is outside 0.." +
+                  std::to_string(kTargetCount - 1));
+}
+
 Result<void> check_range(Target target, const char* name, double x1, double x2) {
   const std::string what = std::string("map of ") + to_string(target) + ": ";
   for (const double x : {x1, x2}) {
@@ -55,7 +62,7 @@ const char* to_string(Target target) noexcept {
       "cutoff", "resonance", "drive",      "crossfade", "control_point",
       "weight", "knot",      "time_scale", "position",  "modulation",
       "free_1", "free_2",    "free_3",     "free_4"};
-  return kNames[index_of(target)];
+  return is_target(target) ? kNames[index_of(target)] : "unknown";
 }
 
 MapSet::Stretch::Stretch(double x1, double x2, double first, double last) noexcept
@@ -94,6 +101,7 @@ void MapSet::choose(const std::vector<Slot>& slots, Chosen& chosen) KNOTWAVE_RT 
 }
 
 Result<MapKey> MapSet::define(Map1 map) {
+  if (auto ok = check_target(map.target); !ok) return ok.error();
   if (auto ok = check_range(map.target, "u", map.u1, map.u2); !ok) return ok.error();
   if (auto ok = check_width(map.target, map.curve.dim()); !ok) return ok.error();
   CompileOptions options;
@@ -108,6 +116,7 @@ Result<MapKey> MapSet::define(Map1 map) {
 }
 
 Result<MapKey> MapSet::define(Map2 map) {
+  if (auto ok = check_target(map.target); !ok) return ok.error();
   if (auto ok = check_range(map.target, "u", map.u1, map.u2); !ok) return ok.error();
   if (auto ok = check_range(map.target, "v", map.v1, map.v2); !ok) return ok.error();
   if (auto ok = check_width(map.target, map.surface.dim()); !ok) return ok.error();
@@ -148,6 +157,7 @@ void MapSet::set_current(Target target, std::span<const double> value) KNOTWAVE_
 }
 
 std::span<const double> MapSet::current(Target target) const KNOTWAVE_RT {
+  if (!is_target(target)) return {};
   return std::span(current_[index_of(target)]).first(index_of(widest(target)));
 }
 
@@ -235,7 +245,7 @@ void MapSet::fill_held(const Channel& channel, bool is_evaluated) const KNOTWAVE
 void MapSet::evaluate_grid(const MapGrid& grid, std::int64_t first,
                            std::span<const Channel> channels) const KNOTWAVE_RT {
   for (const Channel& channel : channels) {
-    const int chosen = chosen_curves_[index_of(channel.target)];
+    const int chosen = is_target(channel.target) ? chosen_curves_[index_of(channel.target)] : -1;
     const int width = chosen < 0 ? 0 : curves_[index_of(chosen)].key.width;
     if (channel.coordinate < 0 || channel.coordinate >= width) {
       fill_held(channel, chosen >= 0);
@@ -260,7 +270,7 @@ void MapSet::evaluate_mesh(const MapGrid& grid_u, std::int64_t first_u, std::int
                            std::span<const Channel> channels) const KNOTWAVE_RT {
   if (count_u < 1) return;
   for (const Channel& channel : channels) {
-    const int chosen = chosen_surfaces_[index_of(channel.target)];
+    const int chosen = is_target(channel.target) ? chosen_surfaces_[index_of(channel.target)] : -1;
     const int width = chosen < 0 ? 0 : surfaces_[index_of(chosen)].key.width;
     if (channel.coordinate < 0 || channel.coordinate >= width) {
       fill_held(channel, chosen >= 0);

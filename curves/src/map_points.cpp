@@ -22,6 +22,11 @@ struct Steps {
 };
 
 Result<void> check(const MapKey& key, std::span<const Steps> directions, std::size_t have) {
+  if (!is_target(key.target)) {
+    return fail(ErrorCode::value_out_of_range,
+                "map: target " + std::to_string(static_cast<int>(key.target)) + " is outside 0.." +
+                    std::to_string(kTargetCount - 1));
+  }
   const int size = key.width + (key.rational ? 1 : 0);
   std::size_t needed = index_of(std::max(size, 0));
   if (key.width < 1 || key.width > kMaxDim) {

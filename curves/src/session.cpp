@@ -24,6 +24,12 @@ Result<void> CurveSession::check_open(const char* call) const {
 }
 
 Result<void> CurveSession::check_width(const char* call, Target target, const NurbsCurve& curve) {
+  if (!is_target(target)) {
+    return fail(ErrorCode::value_out_of_range, std::string("session: ") + call + "(): target " +
+                                                   std::to_string(static_cast<int>(target)) +
+                                                   " is outside 0.." +
+                                                   std::to_string(kTargetCount - 1));
+  }
   if (curve.dim() <= widest(target)) return {};
   return fail(ErrorCode::dimension_mismatch,
               std::string("session: ") + call + "(" + to_string(target) + "): curve '" +

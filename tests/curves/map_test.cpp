@@ -89,6 +89,42 @@ ErrorCode code_of(const Outcome& outcome) {
   return outcome ? ErrorCode::unsupported : outcome.error().code;
 }
 
+TEST(MapSet, ANumberThatIsNoTargetIsRefused) {
+  for (const int number : {-1, curves::kTargetCount, 99}) {
+    const auto target = static_cast<Target>(number);
+    MapSet maps;
+    const auto defined = maps.define(Map1{target, 0, 1, bezier({0, 1})});
+    ASSERT_FALSE(defined);
+    EXPECT_EQ(defined.error().code, ErrorCode::value_out_of_range);
+    EXPECT_EQ(defined.error().message,
+              "map: target " + std::to_string(number) + " is outside 0..18");
+    const auto surface = maps.define(Map2{target, 0, 1, 0, 1, bilinear({0, 1, 2, 3})});
+    EXPECT_EQ(surface.error().code, ErrorCode::value_out_of_range);
+    const double points[] = {0, 1, 2, 3};
+    EXPECT_EQ(curves::bezier_map({target, 1, 1, false}, 0, 1, 1, 2, points).error().code,
+              ErrorCode::value_out_of_range);
+    EXPECT_EQ(
+        curves::bezier_map({target, 2, 1, false}, 0, 1, 1, 2, 0, 1, 2, 2, points).error().code,
+        ErrorCode::value_out_of_range);
+    EXPECT_STREQ(to_string(target), "unknown");
+    EXPECT_EQ(widest(target), 0);
+    maps.set_current(target, points);
+    EXPECT_TRUE(maps.current(target).empty());
+    EXPECT_FALSE(maps.enable({target, 1, 1, false}));
+    MapValues values;
+    maps.evaluate(0.5, values);
+    EXPECT_TRUE(values.of(target).empty());
+    EXPECT_FALSE(values.is_evaluated(target));
+    double out[] = {7, 7};
+    const MapSet::Channel channels[] = {{target, 0, out}};
+    maps.evaluate_grid({}, 0, channels);
+    EXPECT_THAT(out, ElementsAre(0, 0));
+    out[0] = 7;
+    maps.evaluate_mesh({}, 0, 2, {}, 0, channels);
+    EXPECT_THAT(out, ElementsAre(0, 0));
+  }
+}
+
 TEST(Map, BezierMapReadsPointsThatLieBetweenOtherNumbers) {
   std::vector<double> records = {1, 2, 70, 80, 3, 5, 70, 80, 5, 4};  // x, y and two others
   auto map = curves::bezier_map({Target::position, 1, 2, false}, 2, 6, 4, 3, records);

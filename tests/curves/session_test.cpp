@@ -100,6 +100,16 @@ TEST(Session, ExactlyOneCurveAndOneAttributeATarget) {
   EXPECT_TRUE(session.begin()) << "the failed end closed it";
 }
 
+TEST(Session, ANumberThatIsNoTargetIsRefused) {
+  CurveSession session;
+  ASSERT_TRUE(session.begin());
+  for (const int number : {-1, 99}) {
+    const auto target = static_cast<Target>(number);
+    EXPECT_EQ(code_of(session.curve(target, made({0, 1}))), ErrorCode::value_out_of_range);
+    EXPECT_EQ(code_of(session.attribute(target, made({0, 1}))), ErrorCode::value_out_of_range);
+  }
+}
+
 TEST(Session, SamplingStaysAcrossCurves) {
   CurveSession session(FixedStep{4});
   for (int round = 0; round < 2; ++round) {

@@ -40,12 +40,17 @@ enum class Target {
 };
 inline constexpr int kTargetCount = 19;
 
-/// The most coordinates a map onto the target may have. [any]
+/// Whether a number cast to Target is one. [any]
+constexpr bool is_target(Target target) KNOTWAVE_RT {
+  return static_cast<int>(target) >= 0 && static_cast<int>(target) < kTargetCount;
+}
+/// The most coordinates a map onto the target may have; 0 if it is none. [any]
 constexpr int widest(Target target) KNOTWAVE_RT {
+  if (!is_target(target)) return 0;
   if (target < Target::position) return 1;
   return target == Target::position ? 3 : 4;
 }
-const char* to_string(Target target) noexcept;
+const char* to_string(Target target) noexcept;  ///< "unknown" if it is none
 
 /// A curve bound to a target over [u1, u2] of the common coordinate; the curve's own domain is
 /// mapped linearly onto it, forwards if u1 < u2, backwards if not.
@@ -78,7 +83,8 @@ struct MapKey {
 /// order of arguments; order = degree + 1, 2..16; surfaces to be played 2..8). A rational point is
 /// (w x, ..., w), width + 1 numbers. [control] Points are copied. Errors: dimension_mismatch (a
 /// stride below the numbers of a point, fewer numbers than points need), degree_out_of_range,
-/// weight_not_positive, and those of NurbsCurve::create and NurbsSurface::create.
+/// weight_not_positive, value_out_of_range (the target is none), and those of NurbsCurve::create
+/// and NurbsSurface::create.
 Result<Map1> bezier_map(const MapKey& key, double u1, double u2, int stride, int order,
                         std::span<const double> points);
 Result<Map2> bezier_map(const MapKey& key, double u1, double u2, int ustride, int uorder, double v1,
@@ -90,12 +96,14 @@ struct MapValues {
   std::array<int, kTargetCount> width{};       ///< how many of them count
   std::array<bool, kTargetCount> evaluated{};  ///< false: the current value
 
+  /// Nothing, and not evaluated, for what is no target.
   std::span<const double> of(Target target) const KNOTWAVE_RT {
+    if (!is_target(target)) return {};
     const auto i = static_cast<std::size_t>(target);
     return std::span(numbers[i]).first(static_cast<std::size_t>(width[i]));
   }
   bool is_evaluated(Target target) const KNOTWAVE_RT {
-    return evaluated[static_cast<std::size_t>(target)];
+    return is_target(target) && evaluated[static_cast<std::size_t>(target)];
   }
 };
 
@@ -114,7 +122,8 @@ class MapSet {
   MapSet();  ///< no maps, current values 0
 
   /// Compiles and keeps a map in place of the one with the same key; it is disabled until enabled.
-  /// [control] Errors: empty_domain (u1 == u2), not_finite, value_out_of_range (beyond kMaxKnot),
+  /// [control] Errors: empty_domain (u1 == u2), not_finite, value_out_of_range (beyond kMaxKnot,
+  /// or the target is none),
   /// dimension_mismatch (the target takes fewer coordinates), those of compile_parametric or
   /// compile_surface. The set is then as before.
   Result<MapKey> define(Map1 map);
@@ -126,7 +135,7 @@ class MapSet {
   bool is_enabled(const MapKey& key) const KNOTWAVE_RT;
 
   /// The value a target has where no map drives it, up to widest() numbers; of more the first, NaN
-  /// leaves a number as it was. [any]
+  /// leaves a number as it was. What is no target has none. [any]
   void set_current(Target target, std::span<const double> value) KNOTWAVE_RT;
   std::span<const double> current(Target target) const KNOTWAVE_RT;
 
@@ -138,7 +147,8 @@ class MapSet {
   void evaluate_slopes(double u, MapValues& by_u) const KNOTWAVE_RT;
   void evaluate_slopes(double u, double v, MapValues& by_u, MapValues& by_v) const KNOTWAVE_RT;
 
-  /// Where a grid's numbers go: one coordinate of one target (0 where the target has fewer).
+  /// Where a grid's numbers go: one coordinate of one target (0 where the target has fewer, or is
+  /// none).
   struct Channel {
     Target target = Target::amp;
     int coordinate = 0;

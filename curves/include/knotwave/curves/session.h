@@ -29,10 +29,10 @@ class CurveSession {
 
   Result<void> begin();
   /// The curve that decides where values are, and what its numbers are for. Errors: dimension_
-  /// mismatch (more coordinates than the target takes).
+  /// mismatch (more coordinates than the target takes), value_out_of_range (the target is none).
   Result<void> curve(Target target, NurbsCurve curve);
   /// Another curve over the same u, by knots of its own, clamped or wrapped where it is shorter.
-  /// Errors: dimension_mismatch, duplicate_name (a second one for the target, or that of the
+  /// Errors: those of curve(), duplicate_name (a second one for the target, or that of the
   /// curve).
   Result<void> attribute(Target target, NurbsCurve curve);
   /// Keeps [u_a, u_b] of the curve; without, all of it. Parts are given in order (GLU trims

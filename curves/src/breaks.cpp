@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "knotwave/base/index.h"
 #include "knotwave/curves/algorithms.h"
@@ -35,7 +36,7 @@ std::vector<double> largest_derivatives(const NurbsCurve& curve, double u, Side 
   for (int k = 0; k <= max_order; ++k) {
     bounds[index_of(k)] = shares[index_of(k)];
     double binomial = 1;
-    for (int i = 1; i <= k && curve.is_rational(); ++i) {
+    for (int i = 1; i <= std::min(k, p) && curve.is_rational(); ++i) {  // higher shares are 0
       binomial = binomial * (k - i + 1) / i;
       bounds[index_of(k)] += binomial * shares[index_of(i)] * bounds[index_of(k - i)];
     }
@@ -58,6 +59,8 @@ std::vector<double> inner_knots(const NurbsCurve& curve) {
 std::vector<Break> breaks_of(const NurbsCurve& curve, int max_order, int coordinate) {
   std::vector<Break> breaks;
   if (max_order < 0) return breaks;
+  // All derivatives above the degree are 0 without weights.
+  max_order = std::min(max_order, curve.is_rational() ? kMaxBreakOrder : curve.degree());
   const HullRange hull = hull_range(curve, coordinate);
   const double noise = 0x1p-50 * std::max(std::abs(hull.low), std::abs(hull.high));
   const int dim = curve.dim();
@@ -70,8 +73,10 @@ std::vector<Break> breaks_of(const NurbsCurve& curve, int max_order, int coordin
     const auto above = largest_derivatives(curve, u, Side::right, max_order);
     for (int k = 0; k <= max_order; ++k) {
       const auto at = index_of(k * dim + coordinate);
-      const double size = right[at] - left[at];
-      if (std::abs(size) <= noise * (below[index_of(k)] + above[index_of(k)])) continue;
+      constexpr double kMost = std::numeric_limits<double>::max();
+      const double size = std::clamp(right[at] - left[at], -kMost, kMost);
+      // Not so either where the bounds are no numbers any more.
+      if (!(std::abs(size) > noise * (below[index_of(k)] + above[index_of(k)]))) continue;
       breaks.push_back({u, k, size});
       break;
     }

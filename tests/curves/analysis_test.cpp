@@ -329,6 +329,26 @@ TEST(ClosestPoint, SaysTheDistanceAtTheNearestOfCoarseParameters) {
   }
 }
 
+TEST(BreaksOf, AreLookedForUpToAThousandthDerivative) {
+  const NurbsCurve plain = scalar(2, {0, 1, 0, 1}, {0, 0, 0, 0.5, 1, 1, 1});
+  EXPECT_EQ(breaks_of(plain, std::numeric_limits<int>::max()).size(), breaks_of(plain, 2).size());
+  CurveSpec spec = plain.spec();
+  spec.weights = {1, 2, 1, 3};
+  const NurbsCurve rational = made(spec);
+  const auto most = breaks_of(rational, std::numeric_limits<int>::max());
+  const auto known = breaks_of(rational, curves::kMaxBreakOrder);
+  ASSERT_EQ(most.size(), known.size());
+  ASSERT_EQ(most.size(), 1u);
+  EXPECT_EQ(most[0].order, known[0].order);
+  EXPECT_EQ(most[0].size, known[0].size);
+}
+
+TEST(BreaksOf, HaveFiniteSizes) {
+  for (const auto& found : breaks_of(scalar(1, {0, 1, -1}, {0, 0, 1e-280, 1, 1}), 3)) {
+    EXPECT_TRUE(std::isfinite(found.size)) << found.u << ", order " << found.order;
+  }
+}
+
 TEST(BreaksOf, SayWhatJumpsFirst) {
   // A value's jump at 0.25, a corner at 0.5, a jump of curvature at 0.75.
   const NurbsCurve steps = scalar(1, {0, 1, 3, 4, 0}, {0, 0, 0.5, 0.5, 0.75, 1, 1}, {0.5});

@@ -229,6 +229,7 @@ TEST_F(CEdit, Analyses) {
   const auto breaks = curves::breaks_of(bell_, 3);
   ASSERT_EQ(breaks.size(), 1u);
   EXPECT_EQ(taken(out), (std::vector<double>{0.5, double(breaks[0].order), breaks[0].size}));
+  EXPECT_EQ(kw_curve_breaks(b_, 1001, 0, &out, nullptr), KW_VALUE_OUT_OF_RANGE);
   const double point = 0.4;
   ASSERT_EQ(kw_curve_closest_point(b_, &point, 1, &number, &least, nullptr), KW_OK);
   const auto nearest = curves::closest_point(bell_, {&point, 1});

@@ -84,6 +84,11 @@ kw_status kw_curve_span_hulls(const kw_curve* curve, int32_t coordinate, kw_doub
 
 kw_status kw_curve_breaks(const kw_curve* curve, int32_t max_order, int32_t coordinate,
                           kw_doubles* out, kw_error** error) {
+  if (max_order > curves::kMaxBreakOrder) {
+    return report(error, fail(ErrorCode::value_out_of_range,
+                              "max_order " + std::to_string(max_order) + " is above " +
+                                  std::to_string(curves::kMaxBreakOrder)));
+  }
   return ask_numbers(curve, coordinate, out, error, [&](const NurbsCurve& asked) {
     std::vector<double> rows;
     for (const curves::Break& found : curves::breaks_of(asked, max_order, coordinate)) {

@@ -29,6 +29,7 @@ py::array_t<double> span_hulls(const NurbsCurve& curve, int coordinate) {
 }
 
 py::array_t<double> breaks(const NurbsCurve& curve, int max_order, int coordinate) {
+  if (max_order > 0) check_order(max_order);
   check_coordinate(curve, coordinate);
   std::vector<double> rows;
   for (const curves::Break& found : curves::breaks_of(curve, max_order, coordinate)) {

@@ -52,6 +52,8 @@ struct ClosestPoint {
 };
 Result<ClosestPoint> closest_point(const NurbsCurve& curve, std::span<const double> point);
 
+inline constexpr int kMaxBreakOrder = 1000;
+
 /// What happens at a knot: the lowest derivative that jumps, and by how much.
 struct Break {
   double u = 0;
@@ -60,7 +62,8 @@ struct Break {
 };
 /// Every inner knot, and the seam of a periodic curve (at u_min), at which a derivative up to
 /// `max_order` jumps by more than moving the control points by 4 ulp of max|P| could make it: what
-/// band-limited steps and ramps need. In order.
+/// band-limited steps and ramps need. In order. A max_order above kMaxBreakOrder counts as that.
+/// O(max_order p) a knot. A size beyond all doubles is the largest one with its sign.
 std::vector<Break> breaks_of(const NurbsCurve& curve, int max_order, int coordinate = 0);
 
 }  // namespace knotwave::curves

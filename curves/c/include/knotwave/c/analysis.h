@@ -27,6 +27,7 @@ KW_API kw_status kw_curve_total_variation(const kw_curve* curve, int32_t coordin
 KW_API kw_status kw_curve_span_hulls(const kw_curve* curve, int32_t coordinate, kw_doubles* out,
                                      kw_error** error);
 /// Rows of 3, one a knot where a derivative up to max_order jumps: u, order, size.
+/// KW_VALUE_OUT_OF_RANGE: max_order above 1000.
 KW_API kw_status kw_curve_breaks(const kw_curve* curve, int32_t max_order, int32_t coordinate,
                                  kw_doubles* out, kw_error** error);
 /// Where the curve is nearest to point[dim], and how near; either result may be NULL.

@@ -25,25 +25,26 @@ Error no_controls(const NurbsCurve& curve, const std::string& why) {
 }
 
 /// A proved bound this small against the curve's values is taken without measuring how far below
-/// it the error is. Up to degree 5 it always is.
+/// it the error is. Up to degree 5 it is, but where weights lie far apart.
 constexpr double kNegligible = 0x1p-40;
 
-/// Infinity where nothing is proved: pieces that were fitted, weights, controls.
+/// Infinity where nothing is proved: pieces that were fitted, one weight for all points, controls.
 double proved_bound(const NurbsCurve& curve, const ProgramParts& parts) {
-  const bool is_exact = parts.degree == curve.degree() && parts.max_error == 0;
-  const bool has_weights = curve.is_rational() || curve.weights().front() != 1;
-  if (!is_exact || has_weights || parts.rational || !parts.control_rest.empty()) {
+  const bool is_exact = parts.degree == curve.degree() && parts.max_error == 0 &&
+                        parts.rational == curve.is_rational();
+  const bool is_scaled = !parts.rational && curve.weights().front() != 1;
+  if (!is_exact || is_scaled || !parts.control_rest.empty()) {
     return std::numeric_limits<double>::infinity();
   }
   return rounding_bound(parts);
 }
 
-double largest_value(const CurveProgram& program) {
+double negligible(const ProgramParts& parts) {
   double largest = 0;
-  for (int c = 0; c < program.dim(); ++c) {
-    largest = std::max({largest, std::abs(program.low(c)), std::abs(program.high(c))});
+  for (std::size_t c = 0; c < parts.low.size(); ++c) {
+    largest = std::max({largest, std::abs(parts.low[c]), std::abs(parts.high[c])});
   }
-  return largest;
+  return kNegligible * largest;
 }
 
 /// The program of finished pieces, its error against the curve measured once more by
@@ -57,18 +58,19 @@ Result<CurveProgram> checked_program(const NurbsCurve& curve, ProgramParts parts
   }
   const double fit_error = parts.max_error;
   const double bound = proved_bound(curve, parts);
+  const bool is_proved = bound <= negligible(parts);
   CurveProgram program = ProgramBuilder::build(std::move(parts));
-  if (bound <= std::min(options.max_error, kNegligible * largest_value(program))) {
-    ProgramBuilder::set_max_error(program, bound);
-    return program;
+  double error = bound;
+  if (!is_proved) {
+    const auto measured = measured_error(program, curve, options.controls);
+    if (!measured) return measured.error();
+    error = bound < *measured ? bound : *measured;  // NaN stays
   }
-  const auto error = measured_error(program, curve, options.controls);
-  if (!error) return error.error();
-  if (!(*error <= options.max_error)) {
-    return missed_bound(curve, *error, options.max_error,
+  if (!(error <= options.max_error)) {
+    return missed_bound(curve, error, options.max_error,
                         "this is rounding; weights or points are too far apart");
   }
-  ProgramBuilder::set_max_error(program, std::max(*error, fit_error));
+  ProgramBuilder::set_max_error(program, std::max(error, fit_error));
   return program;
 }
 
@@ -88,14 +90,15 @@ Result<CurveProgram> exact_program(const NurbsCurve& curve, const CompileOptions
 Result<CurveProgram> compile_parametric(const NurbsCurve& curve, const CompileOptions& options) {
   if (auto checked = check_options(curve, options); !checked) return checked.error();
   if (curve.degree() <= kMaxPieceDegree) {
-    auto exact = exact_program(curve, options);
+    const ProgramParts parts = exact_parts(curve, options.controls);
+    auto exact = checked_program(curve, parts, options);
+    const bool is_proved = proved_bound(curve, parts) <= negligible(parts);
+    if (exact || is_proved || !options.controls.empty()) return exact;
     // Weights a million to one apart can round away too much; shorter pieces then still meet it.
-    if (exact || !options.controls.empty()) return exact;
+    auto shorter = fitted_program(curve, options, Meeting::value);
+    return shorter ? std::move(shorter) : std::move(exact);
   }
-  if (options.controls.empty()) {
-    const bool is_high = curve.degree() > kMaxPieceDegree;
-    return fitted_program(curve, options, is_high ? Meeting::slope : Meeting::value);
-  }
+  if (options.controls.empty()) return fitted_program(curve, options, Meeting::slope);
   return no_controls(curve, "above degree " + std::to_string(kMaxPieceDegree) +
                                 ", this curve has degree " + std::to_string(curve.degree()));
 }

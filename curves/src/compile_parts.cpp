@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "knotwave/base/document.h"
 
 #include "cubic_spans.h"
 #include "live_spline.h"
+#include "piece_bounds.h"
 #include "piece_fit.h"
 
 namespace knotwave::curves {
@@ -76,6 +78,18 @@ std::vector<double> looks_of(bool delicate) {
   for (double gap = 0x1p-6; gap > 0x1p-50; gap *= closer) looks.push_back(1 - gap);
   for (int last = 1; delicate && last <= 16; ++last) looks.push_back(1 - last * 0x1p-53);
   return looks;
+}
+
+/// What a row's value is off by, in units of 2^-53. Of the power k: 1 rounding of the coefficient,
+/// 2 k + 1 of Horner's products and sums, and 4 k of t, which is a difference times an inverse of a
+/// width (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 5.1). Clamping to the
+/// hull only brings a value nearer.
+double rounding_units(std::span<const double> row) {
+  double units = 0;
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    units += static_cast<double>(6 * k + 2) * std::abs(row[k]);
+  }
+  return units;
 }
 
 double error_at_corner(const CurveProgram& program, const NurbsCurve& curve,
@@ -175,23 +189,38 @@ Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions&
 }
 
 double rounding_bound(const ProgramParts& parts) {
-  // Of the power k: 1 rounding of the coefficient, 2 k + 1 of Horner's products and sums, and 4 k
-  // of t, which is a difference times an inverse of a width (Higham, Accuracy and Stability of
-  // Numerical Algorithms, 2nd ed., 5.1). Clamping to the hull only brings a value nearer.
   constexpr double kUnit = 0x1p-53 * (1 + 0x1p-40);
   double worst = 0;
-  for (std::size_t row = 0; row < parts.coefficients.size(); row += parts.powers()) {
-    double error = 0;
-    for (std::size_t k = 0; k < parts.powers(); ++k) {
-      error += static_cast<double>(6 * k + 2) * std::abs(parts.coefficients[row + k]);
+  for (std::size_t i = 0; i < parts.pieces(); ++i) {
+    const std::span piece = std::span(parts.coefficients).subspan(i * parts.piece_size());
+    const auto row = [&](int c) { return piece.subspan(at(c) * parts.powers(), parts.powers()); };
+    for (int c = 0; c < parts.dim; ++c) {
+      double error = rounding_units(row(c));
+      if (parts.rational) {
+        // N and D are off by their units, so N / D is by those of N and of D times |N / D|, over
+        // the least D there may be; 1 more of the division, 1 of the value it is compared with.
+        const double largest = std::max(std::abs(parts.low[at(c)]), std::abs(parts.high[at(c)]));
+        const double weight_error = rounding_units(row(parts.dim));
+        const PieceRow weights = bernstein_row(row(parts.dim));
+        const double least =
+            *std::min_element(weights.begin(), weights.begin() + parts.degree + 1) -
+            2 * kUnit * weight_error;
+        if (!(least > 0)) return std::numeric_limits<double>::infinity();
+        error = (error + largest * weight_error) / least + 2 * largest;
+      }
+      worst = std::max(worst, error);
     }
-    worst = std::max(worst, error);
   }
   return kUnit * worst;
 }
 
 Result<double> measured_error(const CurveProgram& program, const NurbsCurve& curve,
                               const std::vector<ControlRange>& controls) {
+  constexpr double kBetweenLooks = 4 * 0x1p-52;
+  double largest = 0;
+  for (int c = 0; c < program.dim(); ++c) {
+    largest = std::max({largest, std::abs(program.low(c)), std::abs(program.high(c))});
+  }
   const bool delicate = is_delicate(program, curve, controls);
   const std::vector<double> looks = looks_of(delicate);
   double worst = error_at_corner(program, curve, {}, looks);
@@ -202,7 +231,8 @@ Result<double> measured_error(const CurveProgram& program, const NurbsCurve& cur
     const double error = error_at_corner(program, *moved, values, looks);
     worst = error <= worst ? worst : error;
   }
-  return delicate ? 2 * worst : worst;
+  const bool is_rounding = delicate || program.max_error() == 0;  // else the fit's own error leads
+  return (is_rounding ? 2 * worst : worst) + kBetweenLooks * largest;
 }
 
 Error missed_bound(const NurbsCurve& curve, double error, double asked, const std::string& why) {

@@ -23,12 +23,13 @@ Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions&
 /// Hull, controls, period, and the values at clamped ends: all but the pieces.
 ProgramParts frame_of(const NurbsCurve& curve, const std::vector<ControlRange>& controls);
 
-/// What a program of exact_parts() can be from the curve, by its coefficients: proved, for pieces
-/// without weights or controls.
+/// What a program of exact_parts() without controls can be from the curve, by its coefficients:
+/// proved. Infinity where weights lie so far apart that nothing is.
 double rounding_bound(const ProgramParts& parts);
 
 /// Largest |program - curve| over all coordinates, with controls at rest and at every corner of
-/// their ranges; doubled where weights lie far apart.
+/// their ranges. Rounding is random, so it is doubled where it is most of the error, for places
+/// nobody looked at, and 4 ulp of the largest value are added.
 Result<double> measured_error(const CurveProgram& program, const NurbsCurve& curve,
                               const std::vector<ControlRange>& controls);
 

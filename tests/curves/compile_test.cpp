@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "knotwave/curves/compile.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -162,6 +164,62 @@ TEST(Compile, TheErrorReportedForPolynomialSpansIsABoundAndSmall) {
     ASSERT_TRUE(program) << program.error().message;
     EXPECT_LT(program->max_error(), 1e-12);
     EXPECT_LE(worst_error(*program, curve, 400), program->max_error() + 0x1p-53) << i;
+  }
+}
+
+/// What an answer to a curve says that the program is off by: as compiled, or as refused.
+double stated_error(const Result<CurveProgram>& program) {
+  if (program) return program->max_error();
+  EXPECT_EQ(program.error().code, ErrorCode::error_bound_missed);
+  const std::string &text = program.error().message, before = "the program is ";
+  const std::size_t at = text.find(before);
+  if (at == std::string::npos) ADD_FAILURE() << text;
+  double error = -1;
+  if (at != std::string::npos) {
+    const char* from = text.data() + at + before.size();
+    std::from_chars(from, text.data() + text.size(), error);
+  }
+  return error;
+}
+
+TEST(Compile, TheErrorOfRationalSpansIsNeverUnderstatedWhateverIsAsked) {
+  for (const double scale : {1e-3, 1.0, 1e6}) {
+    for (const NurbsCurve& curve :
+         {rational({-.855 * scale, .293 * scale}, {.0345, 1}, 1),
+          rational({-.855 * scale, .9 * scale, .293 * scale}, {.0345, 1, .2}, 2)}) {
+      const auto whole = compile_function(curve, {1e-9 * scale, 4096, {}});
+      ASSERT_TRUE(whole) << whole.error().message;
+      const double worst = worst_error(*whole, curve, 20000);
+      EXPECT_GT(worst, 0x1p-54 * scale);
+      EXPECT_GE(whole->max_error(), worst);
+      EXPECT_LT(whole->max_error(), 1e-12 * scale);
+      for (const double asked : {1e-17, 1e-16, 3e-16, 1e-15, 1e-14}) {
+        const CompileOptions options{asked * scale, 64, {}};
+        for (const auto& program :
+             {compile_function(curve, options), compile_parametric(curve, options)}) {
+          EXPECT_GE(stated_error(program), worst) << asked << " at scale " << scale;
+          if (!program) continue;
+          EXPECT_GE(program->max_error(), worst_error(*program, curve, 20000));
+        }
+      }
+    }
+  }
+}
+
+TEST(Compile, TheErrorReportedForRationalSpansIsABoundAndSmall) {
+  const std::uint64_t seed = support::test_seed();
+  for (int i = 0; i < support::test_count(300); ++i) {
+    Draws draw(seed + 37, i);
+    testing::RandomCurveOptions random;
+    random.periodic = false;
+    random.max_degree = 4;
+    const NurbsCurve curve = random_curve(draw, random);
+    const auto program = compile_parametric(curve);
+    ASSERT_TRUE(program) << program.error().message;
+    EXPECT_LT(program->max_error(), 1e-12) << i;
+    const double worst = worst_error(*program, curve, 1000);
+    EXPECT_LE(worst, program->max_error()) << i;
+    EXPECT_GE(stated_error(compile_parametric(curve, {2 * worst + 1e-18, 64, {}})), worst) << i;
   }
 }
 

@@ -66,7 +66,9 @@ class DataReduction {
   std::span<const double> datum(std::size_t i) const {
     return data_.values.subspan(i * dim_, dim_);
   }
-  void add_sample(double at, std::size_t line, double fraction);
+  void add_sample(double at, std::size_t line);
+  bool take_lines();
+  bool fit(Spline& spline, int first, int last) const;
 
   Samples data_;
   std::size_t dim_;
@@ -76,12 +78,20 @@ class DataReduction {
   std::vector<double> bounds_;  // one a line
 };
 
-// The place on a line, `fraction` of the way along it.
-void DataReduction::add_sample(double at, std::size_t line, double fraction) {
+// What the line is worth at a place on it as rounded: where data lie close, half an ulp of time is
+// much of the way from one to the next.
+void DataReduction::add_sample(double at, std::size_t line) {
   at_.push_back(at);
+  const auto value = datum(line);
+  if (at == data_.at[line]) {
+    values_.insert(values_.end(), value.begin(), value.end());
+    return;
+  }
+  const DoubleDouble along = DoubleDouble::difference(at, data_.at[line]) /
+                             DoubleDouble::difference(data_.at[line + 1], data_.at[line]);
   for (std::size_t c = 0; c < dim_; ++c) {
-    const double value = datum(line)[c];
-    values_.push_back(fraction == 0 ? value : value + (datum(line + 1)[c] - value) * fraction);
+    const DoubleDouble rise = DoubleDouble::difference(datum(line + 1)[c], value[c]);
+    values_.push_back((DoubleDouble(value[c]) + rise * along).hi);
   }
 }
 
@@ -90,22 +100,28 @@ void DataReduction::sample_lines() {
   const int between = std::max(spline_.degree, 2);
   for (std::size_t i = 0; i + 1 < data_.at.size(); ++i) {
     const double t = data_.at[i], step = data_.at[i + 1] - t;
-    add_sample(t, i, 0);
+    add_sample(t, i);
     for (int k = 1; k <= between; ++k) {
-      const double fraction = static_cast<double>(k) / (between + 1);
-      const double place = t + step * fraction;
+      const double place = t + step * (static_cast<double>(k) / (between + 1));
       if (!(place > at_.back() && place < data_.at[i + 1])) continue;
-      add_sample(place, i, fraction);
+      add_sample(place, i);
     }
   }
-  add_sample(data_.at.back(), data_.at.size() - 1, 0);
+  add_sample(data_.at.back(), data_.at.size() - 1);
+}
+
+// Least squares may leave what coordinates can be; the bound is measured with them back in it.
+bool DataReduction::fit(Spline& spline, int first, int last) const {
+  if (!fit_points(spline, {at_, values_}, first, last)) return false;
+  for (double& x : spline.points) x = std::clamp(x, -kMaxCoordinate, kMaxCoordinate);
+  return true;
 }
 
 bool DataReduction::fit_all() {
   spline_.points.assign(index_of(spline_.count()) * dim_, 0.0);
   std::ranges::copy(datum(0), spline_.points.begin());
   std::ranges::copy(datum(data_.at.size() - 1), spline_.points.end() - std::ptrdiff_t(dim_));
-  if (!fit_points(spline_, {at_, values_}, 1, spline_.count() - 2)) return false;
+  if (!fit(spline_, 1, spline_.count() - 2)) return false;
   bounds_ = measure(spline_, 0, spline_.count() - 1);
   return true;
 }
@@ -181,18 +197,43 @@ void DataReduction::split_failing_spans() {
   std::sort(spline_.knots.begin(), spline_.knots.end());
 }
 
+// The lines themselves, a segment each: what is left where rounding is more than the tolerance, or
+// where data lie too close for places between them. False if these are too many points.
+bool DataReduction::take_lines() {
+  const int p = spline_.degree;
+  const std::size_t last = data_.at.size() - 1;
+  if (last * index_of(p) + 1 > index_of(kMaxPoints)) return false;
+  spline_.knots.assign(index_of(p + 1), data_.at.front());
+  spline_.points.assign(datum(0).begin(), datum(0).end());
+  for (std::size_t i = 0; i < last; ++i) {
+    spline_.knots.insert(spline_.knots.end(), index_of(p), data_.at[i + 1]);
+    for (int j = 1; j <= p; ++j) {
+      for (std::size_t c = 0; c < dim_; ++c) {
+        const DoubleDouble from = DoubleDouble(datum(i)[c]) * DoubleDouble(p - j);
+        const DoubleDouble to = DoubleDouble(datum(i + 1)[c]) * DoubleDouble(j);
+        spline_.points.push_back(((from + to) / DoubleDouble(p)).hi);
+      }
+    }
+  }
+  spline_.knots.push_back(data_.at.back());
+  bounds_ = measure(spline_, 0, spline_.count() - 1);
+  return true;
+}
+
 Result<void> DataReduction::add_knots() {
   while (true) {
     const bool settled = fit_all();
     if (settled && bound() <= tolerance_) return {};
     const std::size_t knots = spline_.knots.size();
     if (settled) split_failing_spans();
-    if (spline_.knots.size() == knots) {
+    const bool stuck = spline_.knots.size() == knots;
+    if (stuck && take_lines()) {
+      if (bound() <= tolerance_) return {};
       return fail(ErrorCode::error_bound_missed, "reduced data: the lines can be met within " +
                                                      number_text(bound()) + ", not " +
                                                      number_text(tolerance_));
     }
-    if (spline_.count() > kMaxPoints) {
+    if (stuck || spline_.count() > kMaxPoints) {
       return fail(ErrorCode::too_many_points, "reduced data: a tolerance of " +
                                                   number_text(tolerance_) + " needs more than " +
                                                   std::to_string(kMaxPoints) + " points");
@@ -211,7 +252,7 @@ bool DataReduction::remove_knot(int knot) {
   const int last_point = fewer.count() - 1;
   // Basis functions knot - p - 1 .. knot - 1 are new; as many again to either side are fitted too.
   const int first = std::max(1, knot - 2 * p - 2), last = std::min(last_point - 1, knot + p);
-  if (!fit_points(fewer, {at_, values_}, first, last)) return false;
+  if (!fit(fewer, first, last)) return false;
   const int from = std::max(0, first - p), to = std::min(last_point, last + p);
   const std::vector<double> bounds = measure(fewer, from, to);
   if (*std::max_element(bounds.begin(), bounds.end()) > tolerance_) return false;
@@ -236,6 +277,18 @@ void DataReduction::remove_knots() {
   }
 }
 
+// Points outside could be clamped, a datum could not be met.
+Result<void> check_range(const std::string& what, std::span<const double> values, int dim) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::abs(values[i]) <= kMaxCoordinate) continue;
+    return fail(ErrorCode::coordinate_out_of_range,
+                what + ": datum " + std::to_string(i / index_of(dim)) + " (" +
+                    number_text(values[i]) + ") is outside -" + number_text(kMaxCoordinate) + ".." +
+                    number_text(kMaxCoordinate));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<FittedCurve> reduce_data(std::span<const double> times, std::span<const double> values,
@@ -255,6 +308,7 @@ Result<FittedCurve> reduce_data(std::span<const double> times, std::span<const d
     return fail(ErrorCode::too_few_points,
                 what + ": 2 data or more are needed, found " + std::to_string(times.size()));
   }
+  if (auto good = check_range(what, values, dim); !good) return good.error();
   DataReduction reduction(data, tolerance, degree, dim);
   if (auto good = reduction.add_knots(); !good) return good.error();
   reduction.remove_knots();

@@ -298,6 +298,61 @@ TEST(ReduceData, NeedsNoInnerKnotForAStraightLineNorMoreThanOneCornerForTwo) {
   EXPECT_LE(cubic->curve.point_count(), 7) << "one triple knot does it";
 }
 
+// Half an ulp of time is 2e-8 of the way from one to the next.
+TEST(ReduceData, TakesDataThatLieCloseAsTheyAre) {
+  const std::vector<double> times{0, 1, 1 + 5e-9}, values{0, 1, -1};
+  for (const double tolerance : {1e-9, 1e-15}) {
+    const auto fit = curves::reduce_data(times, values, tolerance, 1);
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_LE(fit->max_error, tolerance);
+    EXPECT_NEAR(at(fit->curve, 1), 1, tolerance);
+  }
+  const auto exact = curves::reduce_data(times, values, 1e-30, 1);
+  ASSERT_TRUE(exact) << exact.error().message;
+  EXPECT_EQ(exact->max_error, 0);
+  EXPECT_EQ(exact->curve.points()[1], 1);
+}
+
+TEST(ReduceData, ProvesItsBoundWhereDataLieUlpsApart) {
+  Dice dice(test_seed());
+  for (int round = 0; round < test_count(40); ++round) {
+    const int degree = 1 + dice.below(4), n = 3 + dice.below(8);
+    std::vector<double> times{dice.between(-2, 2)}, values{dice.between(-1, 1)};
+    for (int i = 1; i < n; ++i) {
+      double next = times.back() + dice.between(0.1, 1);
+      if (dice.one_in(2)) {
+        next = times.back();
+        for (int ulps = 1 + dice.below(20); ulps > 0; --ulps) next = std::nextafter(next, 1e9);
+      }
+      times.push_back(next);
+      values.push_back(dice.between(-1, 1));
+    }
+    const auto fit = curves::reduce_data(times, values, 1e-12, degree);
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_LE(fit->max_error, 1e-12);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      EXPECT_NEAR(at(fit->curve, times[i]), values[i], 1e-12 + 1e-15) << i;
+    }
+  }
+}
+
+TEST(ReduceData, TakesDataUpToTheLimitOfCoordinatesAndNamesADatumBeyond) {
+  const std::vector<double> times{0, 1, 2, 3, 4};
+  for (const double sign : {1.0, -1.0}) {
+    const std::vector<double> peak{0, 0, sign * 1e6, 0, 0};
+    for (const int degree : {1, 2, 3}) {
+      const auto fit = curves::reduce_data(times, peak, 1e4, degree);
+      ASSERT_TRUE(fit) << degree << ": " << fit.error().message;
+      EXPECT_LE(fit->max_error, 1e4);
+      EXPECT_NEAR(at(fit->curve, 2), sign * 1e6, 1e4);
+    }
+  }
+  const auto beyond = curves::reduce_data(times, std::vector<double>{0, 0, 0, -1e7, 0}, 1e4);
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().code, ErrorCode::coordinate_out_of_range);
+  EXPECT_EQ(beyond.error().message, "reduced data: datum 3 (-1e+07) is outside -1e+06..1e+06");
+}
+
 TEST(ReduceData, NamesWhatIsWrong) {
   const std::vector<double> times{0, 1, 2}, values{0, 1, 0}, back{0, 2, 1};
   EXPECT_EQ(curves::reduce_data(times, values, 0).error().code, ErrorCode::value_out_of_range);

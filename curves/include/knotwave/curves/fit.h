@@ -46,8 +46,9 @@ Result<FittedCurve> approximate(std::span<const double> parameters, std::span<co
 /// fails, more of them at corners; then those that the tolerance can spare are taken out, each with
 /// its neighbourhood fitted anew. Not the fewest points there could be. Errors: too_few_points (n <
 /// 2), degree_out_of_range, value_out_of_range (tolerance not above 0), error_bound_missed (the
-/// tolerance is below the rounding of the values), knots_decrease, dimension_mismatch, not_finite,
-/// too_many_points (more than kMaxPoints needed).
+/// tolerance is below the rounding of the lines' own Bézier points), coordinate_out_of_range (a
+/// datum beyond kMaxCoordinate), knots_decrease, dimension_mismatch, not_finite, too_many_points
+/// (more than kMaxPoints needed).
 Result<FittedCurve> reduce_data(std::span<const double> times, std::span<const double> values,
                                 double tolerance, int degree = 3, int dim = 1);
 

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
+#include "knotwave/base/document.h"
 #include "knotwave/base/file.h"
 #include "knotwave/curves/nurbs_curve.h"
 #include "knotwave/io/sound_file.h"
@@ -112,7 +114,19 @@ class Table {
                      static_cast<int>(cells[i].column) + 1,
                      -1};
       }
-      (i == 0 && columns_ > 1 ? data_.times : data_.values).push_back(*number);
+      const bool is_time = i == 0 && columns_ > 1;
+      if (!is_time && std::abs(*number) > curves::kMaxCoordinate) {
+        const std::size_t datum = data_.values.size() / static_cast<std::size_t>(data_.dim);
+        return Error{ErrorCode::coordinate_out_of_range,
+                     "datum " + std::to_string(datum) + " (" + base::number_text(*number) +
+                         ") is outside -" + base::number_text(curves::kMaxCoordinate) + ".." +
+                         base::number_text(curves::kMaxCoordinate),
+                     path_,
+                     line,
+                     static_cast<int>(cells[i].column) + 1,
+                     -1};
+      }
+      (is_time ? data_.times : data_.values).push_back(*number);
     }
     return {};
   }

@@ -18,7 +18,8 @@ struct Data {
 /// Rows of a time and 1 to 4 values, or of one value each (time is then the row, from 0), separated
 /// by ';', tabs, ',' or blanks, the first of these that the row has. Empty lines, lines that begin
 /// with '#' and a first row that begins with a word are skipped. Errors: malformed with line and
-/// column of the word at fault; dimension_mismatch (more than 4 values); too_few_points (no row).
+/// column of the word at fault; coordinate_out_of_range (a value beyond kMaxCoordinate), the same;
+/// dimension_mismatch (more than 4 values); too_few_points (no row).
 Result<Data> data_of_table(std::string_view text, const std::string& source);
 
 /// A sound (.wav, .flac, .aif, .aiff, .ogg, .w64; time is seconds, a coordinate a channel), or a

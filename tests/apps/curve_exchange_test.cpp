@@ -165,6 +165,7 @@ TEST_F(CurveExchange, FaultsOfTablesSayWhere) {
   fails("t,x\n", ": error: no row of numbers");
   fails("0,1\n0,2\n", ": error: ");
   fails("0,1\n1,inf\n", ":2:3: error: 'inf' is not a number");
+  fails("0,1,0\n1,2,1e7\n", ":2:5: error: datum 1 (1e+07) is outside -1e+06..1e+06");
   expect_failure({"fit", folder_.file("none.csv")}, "no such file");
   std::string many;
   for (int i = 0; i <= 1 << 18; ++i) many += "1\n";

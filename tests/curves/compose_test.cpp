@@ -82,6 +82,25 @@ TEST(Compose, IsPointwise) {
   EXPECT_LE(worst, 1);
 }
 
+// Steep by weights 1000 to 1, so that a crossing rounded to a double is worth more than 4 ulp.
+TEST(Compose, IsOffByTheRoundingOfCrossingsWhereTheOuterCurveIsSteep) {
+  CurveSpec map = spec_of(2, {2, 0, -2, -3, 3}), shape = spec_of(1, {.7, 0, 1, 0});
+  map.weights = {.1, .01, 10, .1, 100};
+  const NurbsCurve outer = made(map), inner = made(shape);
+  const auto both = compose(outer, inner);
+  ASSERT_TRUE(both) << both.error().message;
+  const double ulp = ulp_of(largest_coordinate(*both));
+  const double moved = steepest(outer) * (1 + steepest(inner)) * 0x1p-53;
+  double worst = 0;
+  for (int i = 0; i <= 100000; ++i) {
+    const double u = i == 0 ? 0.5659763227068301 : i / 100000.0;
+    worst = std::max(worst, std::abs(at(*both, u) - at(outer, at(inner, u))));
+  }
+  std::printf("worst %.1f ulp, allowed %.1f\n", worst / ulp, 4 + moved / ulp);
+  EXPECT_GT(worst, 4 * ulp);
+  EXPECT_LE(worst, 4 * ulp + moved);
+}
+
 TEST(Compose, CrossesCornersAtKnots) {
   // A hard limiter at +-1/2 over a line from -1 to 1, whose knots are at -1/2 and 1/2.
   const NurbsCurve limiter = made(spec_of(1, {-0.5, -0.5, 0.5, 0.5}, {-1, -1, -0.5, 0.5, 1, 1}));

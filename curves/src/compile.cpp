@@ -90,10 +90,10 @@ Result<CurveProgram> exact_program(const NurbsCurve& curve, const CompileOptions
 Result<CurveProgram> compile_parametric(const NurbsCurve& curve, const CompileOptions& options) {
   if (auto checked = check_options(curve, options); !checked) return checked.error();
   if (curve.degree() <= kMaxPieceDegree) {
-    const ProgramParts parts = exact_parts(curve, options.controls);
-    auto exact = checked_program(curve, parts, options);
-    const bool is_proved = proved_bound(curve, parts) <= negligible(parts);
-    if (exact || is_proved || !options.controls.empty()) return exact;
+    auto exact = exact_program(curve, options);
+    if (exact || !options.controls.empty()) return exact;
+    const ProgramParts parts = exact_parts(curve, {});
+    if (proved_bound(curve, parts) <= negligible(parts)) return exact;
     // Weights a million to one apart can round away too much; shorter pieces then still meet it.
     auto shorter = fitted_program(curve, options, Meeting::value);
     return shorter ? std::move(shorter) : std::move(exact);

@@ -1,5 +1,5 @@
 # Finds the libraries of others (docs/dependencies.md). AUTO takes what is there and says so; ON and
-# missing is an error; with all three audio parts OFF, curves, dsp and engine still build and test.
+# missing is an error; with all audio parts OFF, curves, dsp and engine still build and test.
 find_package(Threads REQUIRED)
 if("curves" IN_LIST KNOTWAVE_BUILT_MODULES)
   find_package(hwy REQUIRED)
@@ -43,7 +43,9 @@ function(knotwave_find_part part module target)
 endfunction()
 knotwave_find_part(SNDFILE sndfile PkgConfig::SNDFILE)
 knotwave_find_part(PORTAUDIO portaudio-2.0 PkgConfig::PORTAUDIO)
+knotwave_find_part(JACK jack PkgConfig::JACK)
 knotwave_find_part(RTMIDI rtmidi PkgConfig::RTMIDI)
+knotwave_find_part(LIBLO liblo PkgConfig::LIBLO)
 
 if(KNOTWAVE_BUILD_TESTS)
   find_package(GTest REQUIRED)

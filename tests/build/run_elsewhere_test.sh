@@ -24,7 +24,7 @@ expect() {
 }
 
 modules="libhwy tomlplusplus CLI11 sndfile portaudio-2.0 jack rtmidi liblo libebur128 gtest gmock benchmark"
-tools="clang++-14 clang-format-14 clang-tidy-14 python3 midicsv objdump git jackd"
+tools="clang++-14 clang-format-14 clang-tidy-14 python3 midicsv objdump git jackd mandoc zsh fish desktop-file-validate dpkg-shlibdeps file"
 expect build "c++ cmake ninja ccache pkg-config $modules"
 expect demo "c++ cmake ninja ccache pkg-config $modules"
 expect test "c++ cmake ninja ccache pkg-config $modules $tools pybind11"
@@ -40,7 +40,9 @@ have c++ 'read -r line && [ "$line" = "#include <toml++/toml.h>" ]'  # a header 
 expect build "CLI11 gtest"
 
 have pkg-config "exit 0"
-for tool in clang++-14 clang-tidy-14 midicsv objdump git jackd; do have "$tool" "exit 0"; done
+for tool in clang++-14 clang-tidy-14 midicsv objdump git jackd mandoc zsh fish desktop-file-validate dpkg-shlibdeps file; do
+  have "$tool" "exit 0"
+done
 have python3 "exit 1"  # without any module
 expect test "clang-format-14 python3-mpmath python3-numpy python3-pytest python3-scipy"
 exit $failed

@@ -15,7 +15,7 @@ namespace knotwave::io {
 
 struct AudioDeviceInfo {
   int number = 0;   ///< as list_audio_devices() counts, from 0; changes when devices come and go
-  std::string api;  ///< "jack", or PortAudio's host API in lower case: "alsa", "oss", "wasapi"
+  std::string api;  ///< "jack", or PortAudio's host API in lower case: "alsa", "oss"
   std::string name;
   int outputs = 0;
   double rate_hz = 0;    ///< its own
@@ -28,17 +28,22 @@ struct AudioDeviceList {
   std::vector<std::string> notes;  ///< why an API has none: "jack: no server is running"
 };
 
-/// [control] May take a second. Prints nothing, whatever the libraries below would print.
+/// [control] May take a second, and 8 s where a server hangs, which becomes a note. What the
+/// libraries below would print is kept off standard error: while PortAudio looks around, a quarter
+/// of a second, what other threads of the program print there is lost as well.
 AudioDeviceList list_audio_devices();
 
 struct AudioConfig {
-  std::string api;  ///< as in AudioDeviceInfo; empty: "jack" where a server runs, else PortAudio;
-                    ///< "none": no device, blocks are asked for at the pace of the clock
+  /// As in AudioDeviceInfo; empty: "jack" where a server runs, else PortAudio. "none": no device,
+  /// blocks are asked for at the pace of the clock. "portaudio-jack": JACK through PortAudio, which
+  /// the list leaves out.
+  std::string api;
   std::string device;  ///< a number of the list, or part of a name in any case; empty: the default
-  double rate_hz = 0;  ///< 0: the device's own
-  int block_frames = 0;                ///< 16..8192; 0: the device's own
-  double latency_s = 0;                ///< PortAudio: asked for; 0: the least the device offers
-  std::vector<int> channels = {1, 2};  ///< device channel, from 1, of each channel of the client
+  double rate_hz = 0;  ///< 8000..768000; 0: the device's own ("none": 48000)
+  int block_frames = 0;  ///< 16..8192; 0: the device's own ("none": 256)
+  double latency_s = 0;  ///< PortAudio: asked for; 0: the least the device offers
+  /// Device channel, 1..256, of each channel of the client; none twice.
+  std::vector<int> channels = {1, 2};
   std::string client_name = "Knotwave";
   bool connect = true;  ///< jack: to the physical outputs
 };
@@ -47,8 +52,12 @@ inline constexpr int kMaxAudioBlock = 8192;
 
 /// One block to be filled.
 struct AudioBlock {
-  std::int64_t frame = 0;    ///< frames since the stream began; jumps over what the device skipped
-  std::int64_t time_ns = 0;  ///< steady_clock_ns() when the device asked for it
+  /// Frames since the first block; jumps over what the device skipped, where it tells (PortAudio
+  /// does not). Goes on after stop() and start().
+  std::int64_t frame = 0;
+  /// steady_clock_ns() when the device asked for it; never goes back. "none": when the block was
+  /// due, so exactly regular.
+  std::int64_t time_ns = 0;
   std::span<float* const> outputs;  ///< [channels][frames], to be overwritten
   int frames = 0;                   ///< 1..kMaxAudioBlock, not the same every time
   /// Of the stream's own MIDI port, where it has one (jack): time.sample is the offset in this
@@ -63,9 +72,12 @@ class AudioClient {
   virtual void process(const AudioBlock& block) KNOTWAVE_RT = 0;
 };
 
-/// What was agreed on.
+/// What was agreed on. Block size, latency and is_freewheeling follow the server: they are as of
+/// the last status().
 struct AudioFormat {
-  std::string api, device;
+  std::string api;
+  std::string device;       ///< jack without a connection: "not connected"
+  std::string client_name;  ///< jack: as the server gave it, ours may have been taken
   double rate_hz = 0;
   int block_frames = 0;  ///< most often
   int channels = 0;
@@ -77,12 +89,15 @@ struct AudioFormat {
 struct AudioStatus {
   enum class State { stopped, running, lost };
   State state = State::stopped;
-  std::string reason;  ///< of lost: "the JACK server has gone", "no block for 1.0 s"
+  std::string reason;  ///< of lost: "the JACK server has gone", "no block for 0.8 s"
   std::int64_t blocks = 0;
-  std::int64_t xruns = 0;             ///< as the device counts them
-  std::int64_t overruns = 0;          ///< blocks whose process() took longer than they last
-  double load = 0;                    ///< share of the deadline process() takes, smoothed over 1 s
-  double load_p99 = 0, load_max = 0;  ///< since start(); p99 within 1 % of the deadline
+  std::int64_t xruns = 0;     ///< as the device counts them
+  std::int64_t overruns = 0;  ///< blocks whose process() took longer than they last
+  std::int64_t midi_dropped =
+      0;            ///< messages of the stream's MIDI port that were not complete ones
+  double load = 0;  ///< share of the deadline process() takes, smoothed over 1 s
+  double load_p99 = 0,
+         load_max = 0;  ///< since open(); p99 rounded up by 1 % of the deadline at most
 };
 
 /// Open from open() to the destructor. [control] unless said otherwise. Of one thread.
@@ -96,15 +111,18 @@ class AudioStream {
   /// behind, and is_poisoned() says so).
   virtual ~AudioStream() = default;
 
+  /// Errors: io_failed, with what the device says.
   virtual Result<void> start() = 0;
   /// No process() after it returns, within 1 s.
   virtual void stop() = 0;
   virtual const AudioFormat& format() const = 0;
-  /// Looks whether the device still lives: call it some ten times a second.
+  /// Looks whether the device still lives: call it some ten times a second. Lost is told within 1 s
+  /// (blocks longer than 0.2 s: within four of them) and stays: open another stream.
   virtual AudioStatus status() = 0;
 
-  /// A library hung when its device vanished, so that it cannot be used in this process again:
-  /// start the program anew. [any]
+  /// A library hung, as PortAudio does when a JACK server dies, and has not come back: it cannot be
+  /// used in this process, start the program anew. The thread that hangs in it is left behind and
+  /// keeps no exit() from ending the program. [any]
   static bool is_poisoned() noexcept;
 };
 

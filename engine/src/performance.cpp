@@ -53,6 +53,9 @@ void Performance::handle(const Event& event, base::SampleTime time) KNOTWAVE_RT 
     case Event::Kind::all_notes_off:
       release_everything(time);
       break;
+    case Event::Kind::set_target:
+      ++counters_.events_unknown;
+      break;
   }
 }
 

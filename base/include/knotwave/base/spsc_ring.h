@@ -26,6 +26,11 @@ class SpscRing {
   }
 
   std::size_t capacity() const noexcept { return mask_ + 1; }
+  /// Items inside: at most so many as the producer sees it, at least so many as the consumer does.
+  /// [audio] or [control], the producer or the consumer.
+  std::size_t size() const KNOTWAVE_RT {
+    return head_.load(std::memory_order_acquire) - tail_.load(std::memory_order_acquire);
+  }
 
   /// False when full; the item is then not taken. [audio] or [control], one producer.
   bool push(const T& item) KNOTWAVE_RT {

@@ -11,11 +11,15 @@ namespace knotwave::engine {
 class BankProgram;
 
 struct Event {
-  enum class Kind : std::uint8_t { midi, tempo, install_bank, all_notes_off };
+  enum class Kind : std::uint8_t { midi, tempo, install_bank, all_notes_off, set_target };
+  /// The slot that means every slot of the channel.
+  static constexpr int kEverySlot = 0xFFFF;
   Kind kind = Kind::midi;
   base::MidiEvent midi;  ///< Kind::midi; midi.time is the time of every kind
   std::uint32_t microseconds_per_quarter = 500000;  ///< Kind::tempo
   const BankProgram* bank = nullptr;  ///< Kind::install_bank; kept alive by the caller
+  std::uint16_t slot = 0;             ///< Kind::set_target: a slot of map_slots.h, or kEverySlot
+  double number = 0;  ///< Kind::set_target: added there in every voice of midi.channel()
 
   base::SampleTime time() const KNOTWAVE_RT { return midi.time; }
 };

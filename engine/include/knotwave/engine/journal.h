@@ -19,7 +19,7 @@ struct JournalRecord {
   Event::Kind kind = Event::Kind::midi;
   std::uint8_t bytes[3] = {0, 0, 0};
   std::uint8_t sysex_size = 0;
-  std::uint16_t index = 0;  ///< set_target: the slot; install_bank: which of Journal::banks
+  std::uint32_t index = 0;  ///< set_target: the slot; install_bank: which of Journal::banks
   double number = 0;        ///< tempo, set_target
   std::array<std::uint8_t, 24> sysex{};
 };

@@ -1,11 +1,209 @@
 // SPDX-License-Identifier: MIT
+// A stream as a client of JACK.
+#include <cerrno>
+
 #include "audio_backend.h"
+#include "block_watch.h"
+#include "jack_graph.h"
+#include "knotwave/base/document.h"
+#include "library_silence.h"
+#include "patient_call.h"
 
 namespace knotwave::io {
+namespace {
 
-OpenedStream open_jack_stream(const AudioConfig& /*config*/, const FoundDevice& /*device*/,
-                              AudioClient& /*client*/) {
-  return fail(ErrorCode::unsupported, "streams of JACK are not there yet");
+constexpr std::chrono::milliseconds kServerAnswersWithin{3000};
+constexpr std::chrono::milliseconds kClosesWithin{800};
+constexpr const char* kNotConnected = "not connected";
+
+class JackStream final : public AudioStream {
+ public:
+  JackStream(std::shared_ptr<JackGraph> graph, AudioFormat format,
+             std::vector<std::string> playback)
+      : graph_(std::move(graph)), format_(std::move(format)), playback_(std::move(playback)) {}
+  // The graph goes with the call that closes it, however late, and stays where that is refused.
+  ~JackStream() override {
+    graph_->pump().close();
+    auto* const graph = new std::shared_ptr<JackGraph>(std::move(graph_));
+    jack_calls().run(kClosesWithin, [graph] { delete graph; });
+  }
+  JackStream(const JackStream&) = delete;
+  JackStream& operator=(const JackStream&) = delete;
+
+  Result<void> start() override;
+  // The client stays in the graph, silent, and keeps the connections others made.
+  void stop() override {
+    graph_->pump().close();
+    is_started_ = false;
+  }
+  const AudioFormat& format() const override { return format_; }
+  AudioStatus status() override;
+
+ private:
+  void look();
+  void follow_server();
+
+  std::shared_ptr<JackGraph> graph_;
+  AudioFormat format_;
+  std::vector<std::string> playback_;  ///< the port each channel is connected to
+  bool is_active_ = false, is_started_ = false;
+  std::string lost_;  ///< why
+  BlockWatch watch_;
+};
+
+/// Error text, empty when all went well.
+std::string activate_and_connect(JackGraph& graph, const std::vector<std::string>& playback) {
+  if (jack_activate(graph.client()) != 0) return "the JACK server does not let us in";
+  for (std::size_t c = 0; c < playback.size(); ++c) {
+    const char* const ours = jack_port_name(graph.output(c));
+    const int fault = jack_connect(graph.client(), ours, playback[c].c_str());
+    if (fault != 0 && fault != EEXIST) {
+      return "JACK does not connect " + std::string(ours) + " to " + playback[c];
+    }
+  }
+  return {};
+}
+
+Result<void> JackStream::start() {
+  if (!lost_.empty()) return fail(ErrorCode::io_failed, lost_);
+  if (!is_active_) {
+    const auto fault = std::make_shared<std::string>();
+    const auto outcome =
+        jack_calls().run(kServerAnswersWithin, [graph = graph_, playback = playback_, fault] {
+          *fault = activate_and_connect(*graph, playback);
+        });
+    if (outcome != PatientCall::Outcome::done) *fault = "the JACK server does not answer";
+    if (!fault->empty()) return fail(ErrorCode::io_failed, *fault);
+    is_active_ = true;
+  }
+  watch_.restart(steady_clock_ns());
+  graph_->pump().open();
+  is_started_ = true;
+  return {};
+}
+
+void JackStream::follow_server() {
+  JackGraph::News& news = graph_->news();
+  format_.block_frames = news.block_frames;
+  format_.is_freewheeling = news.is_freewheeling;
+  jack_latency_range_t range{};
+  jack_port_get_latency_range(graph_->output(0), JackPlaybackLatency, &range);
+  format_.latency_s = static_cast<double>(range.max) / format_.rate_hz;
+}
+
+void JackStream::look() {
+  JackGraph::News& news = graph_->news();
+  if (news.is_over) {
+    const std::string why = news.reason.data();
+    lost_ = "the JACK server has gone" + (why.empty() ? "" : " (" + why + ")");
+    return;
+  }
+  if (news.rate_hz != static_cast<int>(format_.rate_hz)) {
+    lost_ = "the JACK server went from " + base::number_text(format_.rate_hz) + " Hz to " +
+            std::to_string(news.rate_hz);
+    return;
+  }
+  follow_server();
+  const double length_ns = format_.block_frames / format_.rate_hz * 1e9;
+  if (is_started_ && watch_.is_silent(graph_->pump().blocks(),
+                                      static_cast<std::int64_t>(length_ns), steady_clock_ns())) {
+    lost_ = "the JACK server has asked for no block for 0.8 s";
+  }
+}
+
+AudioStatus JackStream::status() {
+  using State = AudioStatus::State;
+  if (lost_.empty()) look();
+  const LoadMeter::Figures load = graph_->pump().load();
+  AudioStatus status;
+  status.state = !lost_.empty() ? State::lost : is_started_ ? State::running : State::stopped;
+  status.reason = lost_;
+  status.blocks = graph_->pump().blocks();
+  status.xruns = graph_->news().xruns;
+  status.midi_dropped = graph_->news().midi_dropped;
+  status.overruns = load.overruns;
+  status.load = load.load;
+  status.load_p99 = load.p99;
+  status.load_max = load.max;
+  return status;
+}
+
+Result<void> check_server(jack_client_t* client, const AudioConfig& config) {
+  const double rate_hz = jack_get_sample_rate(client);
+  if (config.rate_hz != 0 && config.rate_hz != rate_hz) {
+    const std::string its = base::number_text(rate_hz), asked = base::number_text(config.rate_hz);
+    return fail(ErrorCode::unsupported, "the JACK server runs at " + its + " Hz, not " + asked +
+                                            ": leave the rate out, or start the server anew with "
+                                            "that rate (jackd -r " +
+                                            asked + ")");
+  }
+  const auto block = static_cast<int>(jack_get_buffer_size(client));
+  if (config.block_frames != 0 && config.block_frames != block) {
+    const std::string asked = std::to_string(config.block_frames);
+    return fail(ErrorCode::unsupported, "the JACK server runs blocks of " + std::to_string(block) +
+                                            " frames, not " + asked +
+                                            ": leave the block out, or set the server's "
+                                            "(jack_bufsize " +
+                                            asked + ")");
+  }
+  return {};
+}
+
+/// The playback port of each channel; none where the stream is to be left unconnected.
+Result<std::vector<std::string>> ports_to_play(jack_client_t* client, const AudioConfig& config,
+                                               const std::string& device) {
+  std::vector<std::string> ports;
+  if (!config.connect || device.empty()) return ports;
+  for (const JackOutputs& outputs : physical_outputs(client)) {
+    if (outputs.name != device) continue;
+    for (const int channel : config.channels) {
+      if (channel > static_cast<int>(outputs.ports.size())) {
+        return fail(ErrorCode::value_out_of_range, "there is no channel " +
+                                                       std::to_string(channel) + ": '" + device +
+                                                       "' has " +
+                                                       std::to_string(outputs.ports.size()));
+      }
+      ports.push_back(outputs.ports[static_cast<std::size_t>(channel - 1)]);
+    }
+  }
+  if (ports.empty()) return fail(ErrorCode::io_failed, "JACK's '" + device + "' has just gone");
+  return ports;
+}
+
+OpenedStream open_client(const AudioConfig& config, const std::string& device,
+                         AudioClient& audio) {
+  jack_status_t refused{};
+  JackClient client(jack_client_open(config.client_name.c_str(), JackNoStartServer, &refused));
+  if (!client) return fail(ErrorCode::unsupported, "jack: " + refusal(refused));
+  if (const auto fits = check_server(client.get(), config); !fits) return fits.error();
+  auto ports = ports_to_play(client.get(), config, device);
+  if (!ports) return ports.error();
+  AudioFormat format;
+  format.api = "jack";
+  format.device = ports->empty() ? kNotConnected : device;
+  format.client_name = jack_get_client_name(client.get());
+  format.rate_hz = jack_get_sample_rate(client.get());
+  format.block_frames = static_cast<int>(jack_get_buffer_size(client.get()));
+  format.channels = static_cast<int>(config.channels.size());
+  format.has_midi = true;
+  auto graph = std::make_shared<JackGraph>(std::move(client), audio, format.channels);
+  if (const auto entered = graph->enter(); !entered) return entered.error();
+  return std::unique_ptr<AudioStream>(
+      new JackStream(std::move(graph), std::move(format), std::move(*ports)));
+}
+
+}  // namespace
+
+OpenedStream open_jack_stream(const AudioConfig& config, const FoundDevice& device,
+                              AudioClient& client) {
+  silence_jack();
+  const auto opened = std::make_shared<std::unique_ptr<OpenedStream>>();
+  const auto outcome = jack_calls().run(
+      kServerAnswersWithin, [opened, config, name = device.info.name, &client] {
+        *opened = std::make_unique<OpenedStream>(open_client(config, name, client));
+      });
+  if (outcome == PatientCall::Outcome::done) return std::move(**opened);
+  return fail(ErrorCode::io_failed, "the JACK server does not answer: start it anew");
 }
 
 }  // namespace knotwave::io

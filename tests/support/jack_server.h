@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// A JACK server of a test's own, without a sound card.
+#pragma once
+#include <sys/types.h>
+
+#include <string>
+
+#include "support/program.h"
+
+namespace knotwave::support {
+
+/// jackd's dummy device in sync mode: a late cycle is late and never lost. The environment of this
+/// process names it while it lives, so that clients and child processes find it and no other. One at a
+/// time. Needs the programs of the package jackd2: without them the test fails.
+class JackServer {
+ public:
+  explicit JackServer(int block_frames = 1024, int rate_hz = 48000);
+  ~JackServer();
+  JackServer(const JackServer&) = delete;
+  JackServer& operator=(const JackServer&) = delete;
+
+  /// False where jackd did not come up; what it said is in log().
+  bool runs() const { return runs_; }
+  std::string log() const;
+  /// Has its own process id in it.
+  const std::string& name() const { return name_; }
+
+  void kill();   ///< SIGKILL: no client is told
+  void pause();  ///< SIGSTOP
+  void resume();
+  bool restart();  ///< after kill(), under the same name
+
+ private:
+  void launch();
+  void end(int signal);
+
+  int block_frames_, rate_hz_;
+  std::string name_;
+  ScratchFolder folder_;
+  pid_t process_ = -1;
+  bool runs_ = false;
+};
+
+/// While it lives, no JACK server is found.
+class NoJackServer {
+ public:
+  NoJackServer();
+  ~NoJackServer();
+  NoJackServer(const NoJackServer&) = delete;
+  NoJackServer& operator=(const NoJackServer&) = delete;
+};
+
+}  // namespace knotwave::support

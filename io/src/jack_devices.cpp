@@ -25,10 +25,10 @@ struct Answer {
 };
 
 void ask_server(Answer& answer) {
-  jack_status_t status{};
-  const JackClient client(jack_client_open("Knotwave-list", JackNoStartServer, &status));
+  std::string why;
+  const JackClient client = JackClient::open("Knotwave-list", why);
   if (!client) {
-    answer.found.notes.push_back("jack: " + refusal(status));
+    answer.found.notes.push_back("jack: " + why);
     return;
   }
   answer.runs = true;
@@ -48,7 +48,29 @@ void ask_server(Answer& answer) {
   }
 }
 
+std::string refusal(jack_status_t status) {
+  if ((status & (JackServerFailed | JackServerError)) != 0) return "no server is running";
+  if ((status & JackVersionError) != 0) return "the server is of another version than libjack";
+  return "the server refused a client (status " + std::to_string(static_cast<int>(status)) + ")";
+}
+
 }  // namespace
+
+JackClient JackClient::open(const std::string& name, std::string& why) {
+  JackClient client;
+  client.ticket_ = JackTicket::take();
+  if (!client.ticket_) {
+    why = "a client of ours that lost its server is still open: try again";
+    return client;
+  }
+  jack_status_t status{};
+  client.client_.reset(jack_client_open(name.c_str(), JackNoStartServer, &status));
+  if (!client) {
+    client.ticket_.reset();
+    why = refusal(status);
+  }
+  return client;
+}
 
 std::vector<JackOutputs> physical_outputs(jack_client_t* client) {
   std::vector<JackOutputs> found;
@@ -64,12 +86,6 @@ std::vector<JackOutputs> physical_outputs(jack_client_t* client) {
   }
   jack_free(names);
   return found;
-}
-
-std::string refusal(jack_status_t status) {
-  if ((status & (JackServerFailed | JackServerError)) != 0) return "no server is running";
-  if ((status & JackVersionError) != 0) return "the server is of another version than libjack";
-  return "the server refused a client (status " + std::to_string(static_cast<int>(status)) + ")";
 }
 
 bool find_jack_devices(FoundDevices& found) {

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "jack_graph.h"
 
-#include <jack/midiport.h>
-
 #include <algorithm>
 #include <cstring>
+
+#include <jack/midiport.h>
 
 #include "complete_midi.h"
 
 namespace knotwave::io {
 namespace {
 
-// The largest MIDI buffer of jackd 1.9.21 is 32 KiB and an event takes 12 bytes of it or more: 2730.
+// The largest MIDI buffer of jackd 1.9.21 is 32 KiB and an event takes 12 bytes of it or more:
+// 2730.
 constexpr std::size_t kMaxMidiEvents = 4096;
 constexpr std::int64_t kOldestCycle_us = 1'000'000, kNewestCycle_us = -500'000;
 
@@ -62,6 +63,7 @@ void JackGraph::set_callbacks() {
       [](jack_status_t /*code*/, const char* reason, void* us) {
         News& news = static_cast<JackGraph*>(us)->news_;
         if (reason != nullptr) std::strncpy(news.reason.data(), reason, news.reason.size() - 1);
+        JackTicket::server_has_gone();
         news.is_over = true;
       },
       this);

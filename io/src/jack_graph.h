@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Our client in JACK's graph: its ports and its callbacks. jack_stream.cpp is the control side.
 #pragma once
-#include <jack/jack.h>
-
 #include <array>
 #include <atomic>
 #include <vector>
+
+#include <jack/jack.h>
 
 #include "block_pump.h"
 #include "jack_devices.h"
@@ -21,7 +21,8 @@ class JackClock {
     jack_nframes_t frames = 0;
   };
   /// The next cycle. Frames begin at 0, never overlap and jump over cycles that were skipped; times
-  /// never go back. An age beyond a second, or before half a second from now, is taken as 0. [audio]
+  /// never go back. An age beyond a second, or before half a second from now, is taken as 0.
+  /// [audio]
   void advance(const Cycle& cycle, std::int64_t now_ns) KNOTWAVE_RT;
   std::int64_t frame() const KNOTWAVE_RT { return frame_; }
   std::int64_t time_ns() const KNOTWAVE_RT { return time_ns_; }

@@ -2,10 +2,11 @@
 // A stream as a client of JACK.
 #include <cerrno>
 
+#include "knotwave/base/document.h"
+
 #include "audio_backend.h"
 #include "block_watch.h"
 #include "jack_graph.h"
-#include "knotwave/base/document.h"
 #include "library_silence.h"
 #include "patient_call.h"
 
@@ -105,8 +106,8 @@ void JackStream::look() {
   }
   follow_server();
   const double length_ns = format_.block_frames / format_.rate_hz * 1e9;
-  if (is_started_ && watch_.is_silent(graph_->pump().blocks(),
-                                      static_cast<std::int64_t>(length_ns), steady_clock_ns())) {
+  if (is_started_ && watch_.is_silent(graph_->pump().blocks(), static_cast<std::int64_t>(length_ns),
+                                      steady_clock_ns())) {
     lost_ = "the JACK server has asked for no block for 0.8 s";
   }
 }
@@ -158,10 +159,9 @@ Result<std::vector<std::string>> ports_to_play(jack_client_t* client, const Audi
     if (outputs.name != device) continue;
     for (const int channel : config.channels) {
       if (channel > static_cast<int>(outputs.ports.size())) {
-        return fail(ErrorCode::value_out_of_range, "there is no channel " +
-                                                       std::to_string(channel) + ": '" + device +
-                                                       "' has " +
-                                                       std::to_string(outputs.ports.size()));
+        return fail(ErrorCode::value_out_of_range,
+                    "there is no channel " + std::to_string(channel) + ": '" + device + "' has " +
+                        std::to_string(outputs.ports.size()));
       }
       ports.push_back(outputs.ports[static_cast<std::size_t>(channel - 1)]);
     }
@@ -170,11 +170,10 @@ Result<std::vector<std::string>> ports_to_play(jack_client_t* client, const Audi
   return ports;
 }
 
-OpenedStream open_client(const AudioConfig& config, const std::string& device,
-                         AudioClient& audio) {
-  jack_status_t refused{};
-  JackClient client(jack_client_open(config.client_name.c_str(), JackNoStartServer, &refused));
-  if (!client) return fail(ErrorCode::unsupported, "jack: " + refusal(refused));
+OpenedStream open_client(const AudioConfig& config, const std::string& device, AudioClient& audio) {
+  std::string why;
+  JackClient client = JackClient::open(config.client_name, why);
+  if (!client) return fail(ErrorCode::unsupported, "jack: " + why);
   if (const auto fits = check_server(client.get(), config); !fits) return fits.error();
   auto ports = ports_to_play(client.get(), config, device);
   if (!ports) return ports.error();
@@ -198,8 +197,8 @@ OpenedStream open_jack_stream(const AudioConfig& config, const FoundDevice& devi
                               AudioClient& client) {
   silence_jack();
   const auto opened = std::make_shared<std::unique_ptr<OpenedStream>>();
-  const auto outcome = jack_calls().run(
-      kServerAnswersWithin, [opened, config, name = device.info.name, &client] {
+  const auto outcome =
+      jack_calls().run(kServerAnswersWithin, [opened, config, name = device.info.name, &client] {
         *opened = std::make_unique<OpenedStream>(open_client(config, name, client));
       });
   if (outcome == PatientCall::Outcome::done) return std::move(**opened);

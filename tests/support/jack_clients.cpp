@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "support/jack_clients.h"
 
-#include <jack/midiport.h>
-
 #include <algorithm>
 #include <chrono>
 #include <functional>
 #include <thread>
+
+#include <jack/midiport.h>
 
 namespace knotwave::support {
 namespace {
@@ -24,6 +24,20 @@ bool wait_until(const std::function<bool()>& is_so, double timeout_s) {
 
 }  // namespace
 
+std::vector<std::string> connections_of(const std::string& port) {
+  std::vector<std::string> found;
+  jack_client_t* const client = jack_client_open("look", JackNoStartServer, nullptr);
+  if (client == nullptr) return found;
+  const char** const names =
+      jack_port_get_all_connections(client, jack_port_by_name(client, port.c_str()));
+  for (const char* const* name = names; name != nullptr && *name != nullptr; ++name) {
+    found.emplace_back(*name);
+  }
+  jack_free(names);
+  jack_client_close(client);
+  return found;
+}
+
 JackCapture::JackCapture(const std::vector<std::string>& sources, std::size_t max_frames)
     : samples_(sources.size(), std::vector<float>(max_frames)) {
   client_ = jack_client_open("capture", JackNoStartServer, nullptr);
@@ -33,8 +47,8 @@ JackCapture::JackCapture(const std::vector<std::string>& sources, std::size_t ma
                                         JACK_DEFAULT_AUDIO_TYPE, JackPortIsInput, 0));
   }
   jack_set_process_callback(
-      client_,
-      [](jack_nframes_t n, void* us) { return static_cast<JackCapture*>(us)->process(n); }, this);
+      client_, [](jack_nframes_t n, void* us) { return static_cast<JackCapture*>(us)->process(n); },
+      this);
   if (jack_activate(client_) != 0) return;
   is_connected_ = true;
   for (std::size_t c = 0; c < sources.size(); ++c) {
@@ -99,8 +113,7 @@ int JackMidiSender::process(jack_nframes_t frames) {
     const std::int64_t offset = message.after - static_cast<std::int64_t>(now - begin_);
     if (offset >= frames) return 0;
     const auto at = static_cast<jack_nframes_t>(std::max<std::int64_t>(offset, 0));
-    const int fault =
-        jack_midi_event_write(buffer, at, message.bytes.data(), message.bytes.size());
+    const int fault = jack_midi_event_write(buffer, at, message.bytes.data(), message.bytes.size());
     if (fault != 0) ++refused_;
   }
   is_sent_ = true;

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Clients of a JACK server that judge ours: one that captures sound, one that sends MIDI.
 #pragma once
-#include <jack/jack.h>
-
 #include <atomic>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include <jack/jack.h>
+
 namespace knotwave::support {
+
+/// Full names of the ports that a port is connected to.
+std::vector<std::string> connections_of(const std::string& port);
 
 /// Keeps every sample of its inputs, in memory given at the start.
 class JackCapture {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "support/jack_server.h"
 
-#include <fcntl.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <vector>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace knotwave::support {
 namespace {
@@ -57,12 +57,13 @@ JackServer::~JackServer() {
 
 void JackServer::launch() {
   const std::string rate = std::to_string(rate_hz_), block = std::to_string(block_frames_);
-  std::vector<std::string> words = {"jackd", "-n", name_, "-r", "-S",  "-d",
+  std::vector<std::string> words = {"jackd", "-n", name_, "-r", "-S", "-d",
                                     "dummy", "-r", rate,  "-p", block};
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  const int log = open(folder_.file("log").c_str(), O_CREAT | O_WRONLY | O_APPEND | O_CLOEXEC, 0644);
+  const int log =
+      open(folder_.file("log").c_str(), O_CREAT | O_WRONLY | O_APPEND | O_CLOEXEC, 0644);
   process_ = fork();
   if (process_ == 0) become(argv, log);
   close(log);
@@ -102,9 +103,7 @@ std::string JackServer::log() const {
   return text.str();
 }
 
-NoJackServer::NoJackServer() {
-  find_only("knotwave-test-none-" + std::to_string(getpid()));
-}
+NoJackServer::NoJackServer() { find_only("knotwave-test-none-" + std::to_string(getpid())); }
 
 NoJackServer::~NoJackServer() { unsetenv("JACK_DEFAULT_SERVER"); }
 

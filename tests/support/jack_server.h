@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // A JACK server of a test's own, without a sound card.
 #pragma once
-#include <sys/types.h>
-
 #include <string>
+
+#include <sys/types.h>
 
 #include "support/program.h"
 
 namespace knotwave::support {
 
 /// jackd's dummy device in sync mode: a late cycle is late and never lost. The environment of this
-/// process names it while it lives, so that clients and child processes find it and no other. One at a
-/// time. Needs the programs of the package jackd2: without them the test fails.
+/// process names it while it lives, so that clients and child processes find it and no other. One
+/// at a time. Needs the programs of the package jackd2: without them the test fails.
 class JackServer {
  public:
   explicit JackServer(int block_frames = 1024, int rate_hz = 48000);

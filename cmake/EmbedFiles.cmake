@@ -15,7 +15,7 @@ endforeach()
 file(WRITE ${OUT} "// Made by cmake/EmbedFiles.cmake from examples/.
 #include \"demo.h\"
 
-namespace knotwave::render {
+namespace knotwave::demo {
 namespace {
 ${arrays}constexpr EmbeddedFile kFiles[] = {
 ${table}};
@@ -23,5 +23,5 @@ ${table}};
 
 std::span<const EmbeddedFile> embedded_files() { return kFiles; }
 
-}  // namespace knotwave::render
+}  // namespace knotwave::demo
 ")

@@ -136,6 +136,13 @@ void add_text(CLI::App& app, const OptionText& text, std::string& target) {
   app.add_option(text.names, target, text.about)->type_name(text.type);
 }
 
+void add_texts(CLI::App& app, const OptionText& text, std::vector<std::string>& target) {
+  app.add_option(text.names, target, text.about)
+      ->type_name(text.type)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void add_flag(CLI::App& app, const OptionText& text, bool& target) {
   app.add_flag(text.names, target, text.about)->disable_flag_override();
 }

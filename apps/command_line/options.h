@@ -36,6 +36,8 @@ void add_choice(CLI::App& app, const OptionText& text, std::vector<std::string> 
                 std::function<void(std::size_t)> take);
 /// Any text that is not empty.
 void add_text(CLI::App& app, const OptionText& text, std::string& target);
+/// The same, given any number of times.
+void add_texts(CLI::App& app, const OptionText& text, std::vector<std::string>& target);
 /// `take` returns what is wrong with the text, or nothing.
 void add_checked(CLI::App& app, const OptionText& text,
                  std::function<std::string(const std::string&)> take);

@@ -118,7 +118,8 @@ class WordReader {
     if (!is_joined && has_next) value = words_[++at_];
     if (value.empty()) {
       fault_ = std::string(name) + " needs a value: " + option.get_type_name();
-    } else if (!given_.insert(&option).second) {
+    } else if (!given_.insert(&option).second &&
+               option.get_multi_option_policy() != CLI::MultiOptionPolicy::TakeAll) {
       fault_ = std::string(name) + " is given twice";
     }
   }

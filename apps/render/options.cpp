@@ -10,7 +10,7 @@
 #include "knotwave/base/file.h"
 
 #include "command_line/options.h"
-#include "demo.h"
+#include "demo/demo.h"
 
 namespace knotwave::render {
 namespace {
@@ -43,7 +43,7 @@ constexpr curves::SimdLevel kSimdOf[] = {curves::SimdLevel::best, curves::SimdLe
 
 std::string demo_names() {
   std::string names;
-  for (const auto& name : names_of_demos()) names += (names.empty() ? "" : ", ") + name;
+  for (const auto& name : demo::names_of_demos()) names += (names.empty() ? "" : ", ") + name;
   return names;
 }
 
@@ -123,7 +123,7 @@ std::string input_conflict(const RenderOptions& o) {
     if (!o.patch.empty()) {
       return "--demo plays its own patch and score; leave out '" + o.patch + "'";
     }
-    return is_demo(o.demo) ? "" : unknown_demo(o.demo).message;
+    return demo::is_demo(o.demo) ? "" : demo::unknown_demo(o.demo).message;
   }
   if (o.patch.empty()) return "a PATCH and a SCORE are needed, or --demo NAME";
   if (is_midi_name(o.patch)) {

@@ -4,7 +4,7 @@
 
 #include "bank_input/bank_input.h"
 #include "command_line/output.h"
-#include "demo.h"
+#include "demo/demo.h"
 #include "event_feed.h"
 #include "render_job.h"
 
@@ -78,7 +78,7 @@ Result<RenderInput> read_input(const RenderOptions& options) {
     input->files.push_back({"the score", options.score});
     return input;
   }
-  const auto demo = DemoFiles::unpack(options.demo);
+  const auto demo = demo::DemoFiles::unpack(options.demo);
   if (!demo) return demo.error();
   auto input = read_files(demo->patch(), demo->score(), options.demo);
   if (input) input->files.clear();  // they are gone

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "demo.h"
+#include "demo/demo.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 #include "knotwave/base/file.h"
 
-namespace knotwave::render {
+namespace knotwave::demo {
 namespace {
 
 using testing::Contains;
@@ -31,7 +31,7 @@ TEST(Demo, EveryFileInsideIsTheOneInExamples) {
   }
 }
 
-// The list in apps/render/CMakeLists.txt is written by hand.
+// The list in apps/demo/CMakeLists.txt is written by hand.
 TEST(Demo, EveryPatchCurveBankAndScoreOfExamplesIsInside) {
   for (const char* folder : {"banks", "curves", "patches", "scores"}) {
     for (const auto& entry : std::filesystem::directory_iterator(KNOTWAVE_SOURCE_DIR "/examples/" +
@@ -40,7 +40,7 @@ TEST(Demo, EveryPatchCurveBankAndScoreOfExamplesIsInside) {
       const auto files = embedded_files();
       EXPECT_TRUE(std::any_of(files.begin(), files.end(),
                               [&](const EmbeddedFile& file) { return file.name == name; }))
-          << name << " is missing in apps/render/CMakeLists.txt";
+          << name << " is missing in apps/demo/CMakeLists.txt";
     }
   }
 }
@@ -67,4 +67,4 @@ TEST(Demo, AWrongNameGetsASuggestion) {
 }
 
 }  // namespace
-}  // namespace knotwave::render
+}  // namespace knotwave::demo

@@ -9,7 +9,7 @@
 
 #include "knotwave/base/result.h"
 
-namespace knotwave::render {
+namespace knotwave::demo {
 
 struct EmbeddedFile {
   std::string_view name;  ///< below examples/
@@ -42,4 +42,4 @@ class DemoFiles {
   std::string folder_, patch_, score_;
 };
 
-}  // namespace knotwave::render
+}  // namespace knotwave::demo

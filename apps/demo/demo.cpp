@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "demo.h"
+#include "demo/demo.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,7 +11,7 @@
 
 #include "knotwave/base/suggest.h"
 
-namespace knotwave::render {
+namespace knotwave::demo {
 namespace fs = std::filesystem;
 namespace {
 
@@ -102,4 +102,4 @@ DemoFiles::~DemoFiles() {
   if (!folder_.empty()) fs::remove_all(folder_, ignored);
 }
 
-}  // namespace knotwave::render
+}  // namespace knotwave::demo

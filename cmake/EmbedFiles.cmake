@@ -13,7 +13,7 @@ foreach(file IN LISTS FILES)
   math(EXPR number "${number} + 1")
 endforeach()
 file(WRITE ${OUT} "// Made by cmake/EmbedFiles.cmake from examples/.
-#include \"demo.h\"
+#include \"demo/demo.h\"
 
 namespace knotwave::demo {
 namespace {

@@ -35,8 +35,8 @@ bool Keyboard::skip_sequence(char byte) {
       if (byte == '\x1b') sequence_ = Sequence::escape;
       return byte == '\x1b';
     case Sequence::escape:
-      sequence_ = byte == '[' ? Sequence::parameters
-                              : (byte == 'O' ? Sequence::one_more : Sequence::none);
+      sequence_ =
+          byte == '[' ? Sequence::parameters : (byte == 'O' ? Sequence::one_more : Sequence::none);
       return true;
     case Sequence::parameters:
       if (byte >= '@' && byte <= '~') sequence_ = Sequence::none;

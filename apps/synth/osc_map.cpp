@@ -32,9 +32,7 @@ class Reader {
     if (!(*value >= least && *value <= most)) return beyond(*value, least, most);
     return *value;
   }
-  int whole(int least, int most) {
-    return static_cast<int>(std::lround(number(least, most)));
-  }
+  int whole(int least, int most) { return static_cast<int>(std::lround(number(least, most))); }
   /// 1..16 becomes 0..15; the first where none is given.
   int channel() { return at_ < arguments_.size() ? whole(1, 16) - 1 : 0; }
   std::string text() {
@@ -55,16 +53,15 @@ class Reader {
  private:
   double misused() {
     if (fault_.message.empty()) {
-      fault_ = fail(ErrorCode::usage,
-                    "OSC " + std::string(address_) + " takes " + usage_);
+      fault_ = fail(ErrorCode::usage, "OSC " + std::string(address_) + " takes " + usage_);
     }
     return 1;
   }
   double beyond(double value, double least, double most) {
     if (fault_.message.empty()) {
-      fault_ = fail(ErrorCode::value_out_of_range,
-                    "OSC " + std::string(address_) + ": " + text_of(value) + " is not in " +
-                        text_of(least) + " to " + text_of(most));
+      fault_ = fail(ErrorCode::value_out_of_range, "OSC " + std::string(address_) + ": " +
+                                                       text_of(value) + " is not in " +
+                                                       text_of(least) + " to " + text_of(most));
     }
     return least;
   }
@@ -192,8 +189,7 @@ Result<OscCommand> target_message(std::string_view address, Arguments arguments,
 Result<OscCommand> osc_command(std::string_view address, Arguments arguments, std::int64_t time_ns,
                                const TargetLookup& target) {
   if (address.starts_with("/target/")) return target_message(address, arguments, time_ns, target);
-  for (const std::string_view known :
-       {"/note", "/off", "/cc", "/program", "/pressure", "/bend"}) {
+  for (const std::string_view known : {"/note", "/off", "/cc", "/program", "/pressure", "/bend"}) {
     if (address == known) return channel_message(address, arguments, time_ns);
   }
   for (const std::string_view known : {"/panic", "/patch", "/volume", "/midi", "/tempo"}) {

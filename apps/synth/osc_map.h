@@ -16,12 +16,9 @@
 
 namespace knotwave::synth {
 
-struct OscPanic {
-  friend bool operator==(const OscPanic&, const OscPanic&) = default;
-};
+struct OscPanic {};
 struct OscPatch {
   std::string path;
-  friend bool operator==(const OscPatch&, const OscPatch&) = default;
 };
 /// A message for the engine, or something for the program.
 using OscCommand = std::variant<engine::LiveMessage, OscPanic, OscPatch>;
@@ -31,9 +28,8 @@ using TargetLookup = std::function<Result<std::uint16_t>(std::string_view name)>
 
 /// Errors: unknown_name (an address that means nothing), usage (arguments of other kinds),
 /// value_out_of_range. The message begins with the address.
-Result<OscCommand> osc_command(std::string_view address,
-                               std::span<const io::OscArgument> arguments, std::int64_t time_ns,
-                               const TargetLookup& target);
+Result<OscCommand> osc_command(std::string_view address, std::span<const io::OscArgument> arguments,
+                               std::int64_t time_ns, const TargetLookup& target);
 
 /// Tells every address that was not understood once, as senders repeat themselves.
 class OscFaults {

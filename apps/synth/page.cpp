@@ -75,8 +75,9 @@ PageLine last(const SynthStatus& status) {
 
 PageLine load(const SynthStatus& status) {
   const auto& stream = status.stream;
-  const Style style = stream.load_p99 > 0.9 ? Style::alarm
-                                            : (stream.load_p99 > 0.6 ? Style::warning : Style::plain);
+  const Style style = stream.load_p99 > 0.9
+                          ? Style::alarm
+                          : (stream.load_p99 > 0.6 ? Style::warning : Style::plain);
   return labelled("load",
                   "mean " + percent(stream.load) + "  p99 " + percent(stream.load_p99) + "  max " +
                       percent(stream.load_max) + "   xruns " + std::to_string(stream.xruns) +
@@ -102,13 +103,12 @@ PageLine level(const char* label, float peak, int columns) {
   std::string number = std::isfinite(level_dbfs) ? decimal(level_dbfs) + " dBFS" : "silence";
   number.insert(0, number.size() < kLevelColumns ? kLevelColumns - number.size() : 0, ' ');
   const int bar = std::max(8, columns - kLabelColumns - static_cast<int>(kLevelColumns));
-  return labelled(label, meter(level_dbfs, bar) + number,
-                  peak > 1 ? Style::alarm : Style::good);
+  return labelled(label, meter(level_dbfs, bar) + number, peak > 1 ? Style::alarm : Style::good);
 }
 
 std::size_t characters_in(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
 }
 
 /// The curve as `knotwave-curve plot` draws it, with a mark below where it is played.
@@ -143,13 +143,13 @@ void add_footer(std::vector<PageLine>& lines, const SynthStatus& status) {
 }
 
 std::vector<PageLine> top(const SynthStatus& status, int columns) {
-  std::vector<PageLine> lines = {title(status), sound(status), midi(status), last(status),
-                                 load(status), voices(status)};
+  std::vector<PageLine> lines = {title(status), sound(status), midi(status),
+                                 last(status),  load(status),  voices(status)};
   lines.push_back(level("left", status.live.peak_left, columns));
   lines.push_back(level("right", status.live.peak_right, columns));
   if (!status.recording.empty()) {
-    lines.push_back(labelled("REC", clock_text(status.recorded_s) + "  " + status.recording,
-                             Style::alarm));
+    lines.push_back(
+        labelled("REC", clock_text(status.recorded_s) + "  " + status.recording, Style::alarm));
   }
   return lines;
 }

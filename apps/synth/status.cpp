@@ -17,16 +17,16 @@ constexpr std::array<const char*, 12> kNoteNames = {"C",  "C#", "D",  "D#", "E",
                                                     "F#", "G",  "G#", "A",  "A#", "B"};
 
 std::string note_words(int key) {
-  return std::string(kNoteNames[static_cast<std::size_t>(key % 12)]) + std::to_string(key / 12 - 1) +
-         " (" + std::to_string(key) + ")";
+  return std::string(kNoteNames[static_cast<std::size_t>(key % 12)]) +
+         std::to_string(key / 12 - 1) + " (" + std::to_string(key) + ")";
 }
 
 /// In the fewest digits that say it to six places; null for what JSON has no number for.
 std::string json_number(double value) {
   if (!std::isfinite(value)) return "null";
   std::array<char, 40> text;
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
-                                 std::chars_format::general, 6);
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
   return {text.data(), end.ptr};
 }
 
@@ -41,9 +41,7 @@ class JsonObject {
     return raw(key, json_string(value));
   }
   JsonObject& number(const char* key, double value) { return raw(key, json_number(value)); }
-  JsonObject& count(const char* key, std::int64_t value) {
-    return raw(key, std::to_string(value));
-  }
+  JsonObject& count(const char* key, std::int64_t value) { return raw(key, std::to_string(value)); }
   JsonObject& truth(const char* key, bool value) { return raw(key, value ? "true" : "false"); }
   std::string done() const { return text_ + "}"; }
 
@@ -124,12 +122,11 @@ std::string clock_text(double seconds) {
 
 std::string plain_line(const SynthStatus& status) {
   const auto& live = status.live;
-  std::string line = std::string(state_word(status)) + ", " + status.patch + ", " +
-                     std::to_string(live.counters.voices_now) + " voices, " +
-                     std::to_string(live.messages) + " messages, xruns " +
-                     std::to_string(status.stream.xruns) + ", dropped " +
-                     std::to_string(live.messages_dropped) + ", late " +
-                     std::to_string(live.messages_late);
+  std::string line =
+      std::string(state_word(status)) + ", " + status.patch + ", " +
+      std::to_string(live.counters.voices_now) + " voices, " + std::to_string(live.messages) +
+      " messages, xruns " + std::to_string(status.stream.xruns) + ", dropped " +
+      std::to_string(live.messages_dropped) + ", late " + std::to_string(live.messages_late);
   if (!status.recording.empty()) line += ", recording " + status.recording;
   return line;
 }

@@ -122,7 +122,8 @@ void Screen::show(const std::vector<PageLine>& lines) {
   drawn_.resize(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (lines[i] == drawn_[i]) continue;
-    out += "\x1b[" + std::to_string(i + 1) + ";1H" + terminal_text(lines[i], has_colour_) + "\x1b[K";
+    out +=
+        "\x1b[" + std::to_string(i + 1) + ";1H" + terminal_text(lines[i], has_colour_) + "\x1b[K";
   }
   if (is_shorter) out += "\x1b[" + std::to_string(lines.size() + 1) + ";1H\x1b[J";
   drawn_ = lines;

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Tells when one of some files was saved, also by editors that write a new file and rename it.
+#pragma once
+#include <cstdint>
+#include <ctime>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace knotwave::synth {
+
+/// inotify on the folders the files are in, and a look at the files themselves now and then: where
+/// inotify does not reach (network file systems, the far end of a link) a change is seen a second
+/// later. A file that vanishes is no change; its return is.
+class FileWatch {
+ public:
+  FileWatch();
+  FileWatch(const FileWatch&) = delete;
+  FileWatch& operator=(const FileWatch&) = delete;
+  ~FileWatch();
+
+  /// These files and no others from now on.
+  void watch(const std::vector<std::string>& paths);
+  /// Whether one of them was saved and none was touched for 30 ms since; then false until the next
+  /// time. With `any_in_folders`, every file in their folders counts.
+  bool is_changed(std::int64_t now_ns, bool any_in_folders = false);
+  /// For poll(); -1 without inotify.
+  int descriptor() const { return inotify_; }
+
+ private:
+  struct Signature {
+    std::int64_t size = -1;  ///< -1: not there
+    timespec saved{};
+    std::uint64_t node = 0;
+    bool operator==(const Signature& other) const;
+  };
+  static Signature signature_of(const std::string& path);
+  bool read_events(bool any_in_folders);
+  bool look_at_files();
+
+  int inotify_;
+  std::map<int, std::string> folders_;  ///< by watch descriptor
+  std::map<std::string, Signature> files_;
+  std::int64_t touched_ns_ = 0, looked_ns_ = 0;
+  bool is_touched_ = false;
+};
+
+}  // namespace knotwave::synth

@@ -31,14 +31,17 @@ std::string names_of(const std::vector<const FoundDevice*>& devices) {
   return joined(names, ", ");
 }
 
+std::string reasons(const FoundDevices& found) {
+  return found.notes.empty() ? "" : " (" + joined(found.notes, "; ") + ")";
+}
+
 Error no_device(const FoundDevices& found, const std::string& api) {
   const std::string which = api.empty() ? "" : " of " + api;
-  const std::string why = found.notes.empty() ? "" : " (" + joined(found.notes, "; ") + ")";
   return fail(ErrorCode::unsupported,
               "no sound device" + which +
                   ": start a JACK or PipeWire server, plug one in, or record without one: "
                   "--audio-api none --record FILE" +
-                  why);
+                  reasons(found));
 }
 
 Error unknown_api(const FoundDevices& found, const std::string& api) {
@@ -47,10 +50,12 @@ Error unknown_api(const FoundDevices& found, const std::string& api) {
     if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
   };
   for (const FoundDevice& device : found.devices) add(device.info.api);
-  for (const std::string& note : found.notes) add(note.substr(0, note.find(':')));
+  for (const std::string& note : found.notes) {
+    if (note.rfind("portaudio:", 0) != 0) add(note.substr(0, note.find(':')));
+  }
   known.emplace_back("none");
-  return fail(ErrorCode::unknown_name,
-              "there is no audio API '" + api + "' here; there is: " + joined(known, ", "));
+  return fail(ErrorCode::unknown_name, "there is no audio API '" + api + "' here; there is: " +
+                                           joined(known, ", ") + reasons(found));
 }
 
 bool has_note_on(const FoundDevices& found, const std::string& api) {

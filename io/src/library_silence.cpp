@@ -2,6 +2,7 @@
 #include "library_silence.h"
 
 #include <cstdio>
+#include <mutex>
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -18,6 +19,16 @@ using AlsaHandler = void (*)(const char* file, int line, const char* function, i
                              const char* format, ...);  // NOLINT(cert-dcl50-cpp): ALSA's type
 void say_nothing(const char* /*file*/, int /*line*/, const char* /*function*/, int /*error*/,
                  const char* /*format*/, ...) {}  // NOLINT(cert-dcl50-cpp): ALSA's type
+
+struct StandardError {
+  std::mutex mutex;
+  int users = 0, descriptor = -1;
+};
+
+StandardError& kept() {
+  static StandardError standard_error;
+  return standard_error;
+}
 
 }  // namespace
 
@@ -36,20 +47,25 @@ void silence_jack() noexcept {
 #endif
 }
 
+// The first one keeps where standard error went, the last one gives it back.
 SilentStandardError::SilentStandardError() noexcept {
+  const std::lock_guard lock(kept().mutex);
+  if (kept().users++ > 0) return;
   std::fflush(stderr);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere < 0) return;
-  kept_ = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-  if (kept_ >= 0) dup2(nowhere, STDERR_FILENO);
+  kept().descriptor = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  if (kept().descriptor >= 0) dup2(nowhere, STDERR_FILENO);
   close(nowhere);
 }
 
 SilentStandardError::~SilentStandardError() {
-  if (kept_ < 0) return;
+  const std::lock_guard lock(kept().mutex);
+  if (--kept().users > 0 || kept().descriptor < 0) return;
   std::fflush(stderr);
-  dup2(kept_, STDERR_FILENO);
-  close(kept_);
+  dup2(kept().descriptor, STDERR_FILENO);
+  close(kept().descriptor);
+  kept().descriptor = -1;
 }
 
 }  // namespace knotwave::io

@@ -10,16 +10,13 @@ void silence_alsa() noexcept;
 void silence_jack() noexcept;
 
 /// Standard error of the whole program goes nowhere while it lives: for what plug-ins of ALSA and
-/// PortAudio itself write there. One at a time.
+/// PortAudio itself write there. Several may live at once.
 class SilentStandardError {
  public:
   SilentStandardError() noexcept;
   ~SilentStandardError();
   SilentStandardError(const SilentStandardError&) = delete;
   SilentStandardError& operator=(const SilentStandardError&) = delete;
-
- private:
-  int kept_ = -1;
 };
 
 }  // namespace knotwave::io

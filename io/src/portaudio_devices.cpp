@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <dlfcn.h>
+
 #include "library_silence.h"
 #include "portaudio_library.h"
 
@@ -7,13 +9,9 @@ namespace {
 
 constexpr std::chrono::seconds kAnswersWithin{5};
 
-std::string api_name(const PaHostApiInfo& api) {
-  return api.type == paJACK ? kPortAudioJack : lower_case(api.name);
-}
-
 AudioDeviceInfo described(const PaDeviceInfo& device, const PaHostApiInfo& api, bool is_default) {
   AudioDeviceInfo info;
-  info.api = api_name(api);
+  info.api = portaudio_api_name(api);
   info.name = device.name;
   info.outputs = device.maxOutputChannels;
   info.rate_hz = device.defaultSampleRate;
@@ -31,15 +29,14 @@ void add_devices_of(const PaHostApiInfo& api, PaHostApiIndex api_number, FoundDe
     found.devices.push_back({described(*device, api, number == api.defaultOutputDevice), number});
   }
   if (found.devices.size() == before) {
-    found.notes.push_back(api_name(api) + ": no device with outputs");
+    found.notes.push_back(portaudio_api_name(api) + ": no device with outputs");
   }
 }
 
 void ask_library(bool with_jack, FoundDevices& found) {
-  const PortAudioUse use;
-  silence_alsa();  // PortAudio may have loaded it only now
-  if (use.error() != paNoError) {
-    found.notes.push_back(std::string("portaudio: ") + Pa_GetErrorText(use.error()));
+  const PortAudioUse use("Knotwave-list");
+  if (!use.error().empty()) {
+    found.notes.push_back("portaudio: " + use.error());
     return;
   }
   for (PaHostApiIndex i = 0; i < Pa_GetHostApiCount(); ++i) {
@@ -48,7 +45,39 @@ void ask_library(bool with_jack, FoundDevices& found) {
   }
 }
 
+// PortAudio keeps the pointer.
+void set_jack_name(const std::string& name) {
+  static auto* const kept = new std::string;
+  using Setter = PaError (*)(const char*);
+  auto* const found = dlsym(RTLD_DEFAULT, "PaJack_SetClientName");  // some PortAudios have no JACK
+  if (found == nullptr) return;
+  *kept = name;
+  reinterpret_cast<Setter>(found)(kept->c_str());
+}
+
 }  // namespace
+
+PortAudioUse::PortAudioUse(const std::string& client_name) : ticket_(JackTicket::take()) {
+  if (!ticket_) {
+    error_ = "a JACK client of ours that lost its server is still open: try again";
+    return;
+  }
+  set_jack_name(client_name);
+  const PaError fault = Pa_Initialize();
+  is_initialised_ = fault == paNoError;
+  if (!is_initialised_) error_ = Pa_GetErrorText(fault);
+  const bool uses_jack = is_initialised_ && Pa_HostApiTypeIdToHostApiIndex(paJACK) >= 0;
+  if (!uses_jack) ticket_.reset();
+  silence_alsa();  // it may have been loaded only now
+}
+
+PortAudioUse::~PortAudioUse() {
+  if (is_initialised_) Pa_Terminate();
+}
+
+std::string portaudio_api_name(const PaHostApiInfo& api) {
+  return api.type == paJACK ? kPortAudioJack : lower_case(api.name);
+}
 
 PatientCall::Outcome run_portaudio(std::chrono::milliseconds limit, std::function<void()> work) {
   silence_alsa();

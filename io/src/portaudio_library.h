@@ -6,25 +6,31 @@
 #include <portaudio.h>
 
 #include "audio_backend.h"
+#include "jack_session.h"
 #include "patient_call.h"
 
 namespace knotwave::io {
 
 /// PortAudio is initialised while one lives; PortAudio counts them. Made and destroyed inside
-/// portaudio_calls() only, as both may hang.
+/// portaudio_calls() only, as both may hang. Where a JACK server runs PortAudio is a client of it,
+/// whatever device is played.
 class PortAudioUse {
  public:
-  PortAudioUse() noexcept : error_(Pa_Initialize()) {}
-  ~PortAudioUse() {
-    if (error_ == paNoError) Pa_Terminate();
-  }
+  /// `client_name`: JACK knows us by it.
+  explicit PortAudioUse(const std::string& client_name);
+  ~PortAudioUse();
   PortAudioUse(const PortAudioUse&) = delete;
   PortAudioUse& operator=(const PortAudioUse&) = delete;
-  PaError error() const noexcept { return error_; }
+  /// Empty where all is well.
+  const std::string& error() const noexcept { return error_; }
 
  private:
-  PaError error_;
+  std::unique_ptr<JackTicket> ticket_;
+  bool is_initialised_ = false;
+  std::string error_;
 };
+
+std::string portaudio_api_name(const PaHostApiInfo& api);
 
 /// portaudio_calls().run() with standard error silent meanwhile. [control]
 PatientCall::Outcome run_portaudio(std::chrono::milliseconds limit, std::function<void()> work);

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// In place of jack_watch.cpp where JACK is not built in: without it nobody would see that the
+// server has gone, so RtMidi's JACK is left alone.
+#include "jack_watch.h"
+
+namespace knotwave::io {
+
+Result<std::unique_ptr<JackWatch>> JackWatch::open(const std::string& /*client_name*/) {
+  return fail(
+      ErrorCode::unsupported,
+      "not built in; install libjack-jackd2-dev and build again with KNOTWAVE_WITH_JACK=ON");
+}
+
+}  // namespace knotwave::io

@@ -31,6 +31,11 @@ void JackTicket::server_has_gone() noexcept {
   tickets().has_server_gone = tickets().out > 0;
 }
 
+bool JackTicket::has_server_gone() noexcept {
+  const std::lock_guard lock(tickets().mutex);
+  return tickets().has_server_gone;
+}
+
 JackTicket::~JackTicket() {
   const std::lock_guard lock(tickets().mutex);
   if (--tickets().out == 0) tickets().has_server_gone = false;

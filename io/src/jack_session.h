@@ -15,6 +15,9 @@ class JackTicket {
   static std::unique_ptr<JackTicket> take();
   /// From the shutdown callback of any client: its server has gone.
   static void server_has_gone() noexcept;
+  /// True from then until every client is closed: so close yours, even if it was not told. libjack
+  /// takes the server for gone as well when it throws out one client of a program.
+  static bool has_server_gone() noexcept;
 
   ~JackTicket();
   JackTicket(const JackTicket&) = delete;

@@ -26,13 +26,9 @@ std::vector<std::string> taken(const char** names) {
   return all;
 }
 
-struct CloseClient {
-  void operator()(jack_client_t* client) const noexcept { jack_client_close(client); }
-};
-
 class OpenWatch : public JackWatch {
  public:
-  bool is_alive() const noexcept override { return !has_gone_; }
+  bool is_alive() const noexcept override { return !has_gone_ && !JackTicket::has_server_gone(); }
   std::vector<std::string> sources() const override { return midi_ports(JackPortIsOutput); }
   std::vector<std::string> sinks() const override { return midi_ports(JackPortIsInput); }
   std::vector<std::string> connections(const std::string& port) const override {
@@ -43,11 +39,9 @@ class OpenWatch : public JackWatch {
 
   /// Empty where it worked, else why not.
   std::string open(const std::string& client_name) {
-    ticket_ = JackTicket::take();
-    if (!ticket_) return "the server has gone, and a client of it is still open";
-    jack_status_t status{};
-    client_.reset(jack_client_open(client_name.c_str(), JackNoStartServer, &status));
-    if (!client_) return refusal(status);
+    std::string why;
+    client_ = JackClient::open(client_name, why);
+    if (!client_) return why;
     jack_on_shutdown(
         client_.get(),
         [](void* watch) {
@@ -64,8 +58,7 @@ class OpenWatch : public JackWatch {
   }
 
   std::atomic<bool> has_gone_{false};
-  std::unique_ptr<JackTicket> ticket_;  // given back after the client is closed
-  std::unique_ptr<jack_client_t, CloseClient> client_;
+  JackClient client_;
 };
 
 struct Attempt {

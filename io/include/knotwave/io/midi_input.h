@@ -23,9 +23,11 @@ struct MidiPortList {
 MidiPortList list_midi_ports();
 
 struct MidiInputConfig {
-  std::string api;                 ///< empty: every API that works
-  std::vector<std::string> ports;  ///< parts of names in any case; empty: all, also those to come
-  bool virtual_port = true;        ///< one of our own that others can connect to
+  std::string api;  ///< empty: every API that works
+  /// Parts of names in any case; empty: all, also those to come. Virtual outputs of this program
+  /// are never opened; with all, ports of ALSA that JACK shows once more are left to ALSA.
+  std::vector<std::string> ports;
+  bool virtual_port = true;  ///< one of our own, "in", that others can connect to
   std::string client_name = "Knotwave";
 };
 
@@ -38,19 +40,23 @@ class MidiListener {
   /// `event.port` is 0..kMaxMidiPorts-1, its time is not set: `time_ns` is, by steady_clock_ns().
   /// System exclusive data is valid during the call. Must not block or allocate.
   virtual void message(const base::MidiEvent& event, std::int64_t time_ns) noexcept = 0;
-  /// The cable was pulled, or active sensing went silent for 300 ms: its notes must end.
+  /// The cable was pulled (with JACK also out of our own port, whoever else is in it), or active
+  /// sensing went silent for 300 ms: its notes must end.
   virtual void port_lost(int port) noexcept = 0;
 };
 
 struct MidiPortStatus {
   int port = 0;
   std::string api, name;
-  bool is_open = false;  ///< false: gone; it gets its number again when it comes back
+  bool is_open = false;  ///< false: gone; it gets its number again when it comes back,
+                         ///< unless all numbers were taken meanwhile
   std::int64_t messages = 0;
   std::int64_t faults = 0;  ///< stray bytes, cut messages, system exclusive too long
 };
 
-/// [control] One thread.
+/// [control] One thread. With RtMidi's JACK a message is stamped when its block begins to be
+/// processed: up to a block late. A JACK server that dies takes its ports along, and ports are
+/// there again within 0.6 s of its successor and a poll(); in between this holds no client of JACK.
 class MidiInputs {
  public:
   /// `listener` must outlive it. No port at all is no error: one may come. Errors: unknown_name (an

@@ -11,7 +11,7 @@
 namespace knotwave::io {
 namespace {
 
-constexpr std::int64_t kRetry_ns = 500'000'000;
+constexpr std::int64_t kRetryNs = 500'000'000;
 constexpr std::chrono::seconds kClosesWithin{1};
 constexpr const char* kOwnName = "in";
 
@@ -33,7 +33,7 @@ MidiApi::~MidiApi() { stop(); }
 bool MidiApi::start(std::int64_t now_ns) {
   if (works_ || now_ns < next_try_ns_) return false;
   if (is_jack(name_)) {
-    next_try_ns_ = now_ns + kRetry_ns;
+    next_try_ns_ = now_ns + kRetryNs;
     auto watch = JackWatch::open(client_name_);
     if (watch) {
       watch_ = std::move(*watch);

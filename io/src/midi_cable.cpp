@@ -5,7 +5,7 @@ namespace knotwave::io {
 namespace {
 
 constexpr std::uint8_t kActiveSensing = 0xFE;
-constexpr std::int64_t kSilence_ns = 300'000'000;
+constexpr std::int64_t kSilenceNs = 300'000'000;
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void MidiCable::receive(std::span<const std::uint8_t> bytes, std::int64_t time_n
 
 void MidiCable::check_sensing(std::int64_t now_ns) noexcept {
   const std::lock_guard lock(mutex_);
-  if (is_sensed_ && now_ns - last_ns_ > kSilence_ns) lose();
+  if (is_sensed_ && now_ns - last_ns_ > kSilenceNs) lose();
 }
 
 void MidiCable::end_notes() noexcept {

@@ -12,7 +12,7 @@
 namespace knotwave::io {
 namespace {
 
-constexpr std::int64_t kReopen_ns = 1'000'000'000;
+constexpr std::int64_t kReopenNs = 1'000'000'000;
 
 /// A port number and whose it is.
 struct Slot {
@@ -241,7 +241,7 @@ class RtMidiInputs : public MidiInputs {
     }
     if (slot->input || now_ns < slot->next_try_ns) return false;
     slot->name = source.name;
-    slot->next_try_ns = now_ns + kReopen_ns;
+    slot->next_try_ns = now_ns + kReopenNs;
     slot->cable = std::make_shared<MidiCable>(number(*slot), listener_, slot->cable->messages(),
                                               slot->cable->faults());
     auto input = is_virtual ? api.open_virtual(slot->cable, slot->full_name)

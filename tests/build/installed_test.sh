@@ -7,7 +7,7 @@ build=$1 source=$2 cxx=$3 more=${4:-}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # shellcheck disable=SC2086
-cmake --build "$build" --target programs knotwave_engine knotwave_io knotwave_curves_c $more >"$work/build.log" || { tail -n 30 "$work/build.log"; exit 1; }
+cmake --build "$build" --target installable $more >"$work/build.log" || { tail -n 30 "$work/build.log"; exit 1; }
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
 expected="0.50 0.25 261.626 Hz, empty.mid"
 

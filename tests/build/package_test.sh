@@ -60,7 +60,7 @@ tree() {
 
 for package in knotwave knotwave-dev; do
   deb=$(echo "$build/packages/${package}"_[0-9]*.deb)
-  root=$work/root/$package
+  root=$work/unpacked/$package
   mkdir -p "$root"
   dpkg-deb -x "$deb" "$root"
   dpkg-deb -e "$deb" "$work/$package.control"
@@ -85,7 +85,7 @@ for package in knotwave knotwave-dev; do
     grep -q "^$field: ." "$work/$package.control/control" || complain "$package: no $field"
   done
 done
-for binary in "$work"/root/knotwave/usr/bin/* "$work/root/knotwave-dev/$lib/libknotwave_curves_c.so.1"; do
+for binary in "$work"/unpacked/knotwave/usr/bin/* "$work/unpacked/knotwave-dev/$lib/libknotwave_curves_c.so.1"; do
   [[ $(file "$binary") == *", stripped"* ]] || complain "$binary is not stripped"
 done
 for entry in "$source"/apps/desktop/*.desktop; do
@@ -95,11 +95,11 @@ for entry in "$source"/apps/desktop/*.desktop; do
 done
 
 # What a manual page shows of examples/ works in share/knotwave, as it says.
-PATH=$work/root/knotwave/usr/bin:$PATH
+PATH=$work/unpacked/knotwave/usr/bin:$PATH
 for program in "${programs[@]}"; do
   [[ $("$program" --version) == "$program "* ]] || complain "$program --version"
 done
-cd "$work/root/knotwave/usr/share/knotwave"
+cd "$work/unpacked/knotwave/usr/share/knotwave"
 knotwave-curve check examples/*/*.toml >"$work/checked" || { cat "$work/checked"; complain "a shipped example has a fault"; }
 count=0
 while IFS= read -r command; do

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "knotwave/base/document.h"
@@ -88,10 +89,18 @@ class CommonKnots {
     for (const auto& [knot, count] : times) times_[knot] = std::max(times_[knot], count);
   }
 
-  // A knot within `slack` of u, or u.
+  // The nearest knot within `slack` of u, or u.
   double snapped(double u, double slack) const {
-    const auto above = std::lower_bound(written_.begin(), written_.end(), u - slack);
-    return above != written_.end() && *above <= u + slack ? *above : u;
+    const auto above = std::lower_bound(written_.begin(), written_.end(), u);
+    double nearest = u, distance = slack;
+    if (above != written_.end() && *above - u <= distance) {
+      nearest = *above;
+      distance = nearest - u;
+    }
+    if (above != written_.begin() && u - *std::prev(above) <= distance && distance > 0) {
+      nearest = *std::prev(above);
+    }
+    return nearest;
   }
 
   Result<NurbsCurve> inserted_into(const NurbsCurve& curve) const {

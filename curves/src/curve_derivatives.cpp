@@ -7,36 +7,13 @@
 #include "knotwave/base/index.h"
 #include "knotwave/curves/nurbs_curve.h"
 
+#include "scaled_double.h"
 #include "span_basis.h"
 
 namespace knotwave::curves {
 namespace {
 
 using base::index_of;
-
-/// 2^exponent, exponent -1022..1023.
-double power_of_two(int exponent) noexcept {
-  double power = 1;
-  for (; exponent > 0; --exponent) power *= 2;
-  for (; exponent < 0; ++exponent) power *= 0.5;
-  return power;
-}
-
-/// value * 2^exponent, the largest double with its sign where that is beyond all doubles.
-double saturated(double value, int exponent) noexcept {
-  constexpr double kMost = std::numeric_limits<double>::max();
-  for (; exponent > 0 && value != 0 && std::abs(value) < kMost; --exponent) value *= 2;
-  for (; exponent < 0 && value != 0; ++exponent) value *= 0.5;
-  return std::clamp(value, -kMost, kMost);
-}
-
-/// 2^result <= x < 2^(result + 1), for a double x > 0 that is not subnormal.
-int exponent_of(double x) noexcept {
-  int exponent = 0;
-  for (; x >= 2; x *= 0.5) ++exponent;
-  for (; x < 1; x *= 2) --exponent;
-  return exponent;
-}
 
 /// Derivatives of numerator and denominator by u * 2^-unit_exponent; 0 above the degree.
 struct Sums {

@@ -123,7 +123,8 @@ CurvePart slope_of(const BezierPiece& piece, const BezierPiece& slope, double u0
   return part;
 }
 
-Result<NurbsCurve> rational_hodograph(const NurbsCurve& curve) {
+/// `all` is the curve, or its domain alone.
+Result<NurbsCurve> rational_hodograph(const NurbsCurve& curve, const HomogeneousCurve& all) {
   const int p = curve.degree();
   if (2 * p > kMaxDegree) {
     return fail(ErrorCode::degree_out_of_range, "the hodograph of curve '" + curve.name() +
@@ -131,7 +132,6 @@ Result<NurbsCurve> rational_hodograph(const NurbsCurve& curve) {
                                                     ", would have degree " + std::to_string(2 * p) +
                                                     ", the limit is " + std::to_string(kMaxDegree));
   }
-  const HomogeneousCurve all(curve);
   CurveChain chain(2 * p, curve.dim());
   const std::vector<BezierPiece> pieces = bezier_pieces(all);
   const std::vector<BezierPiece> slopes = bezier_pieces(derivative_of(all));
@@ -143,6 +143,26 @@ Result<NurbsCurve> rational_hodograph(const NurbsCurve& curve) {
                  corner ? 0 : std::numeric_limits<double>::infinity());
   }
   return chain.finish(curve.name());
+}
+
+// p times in degree p - 1: a jump.
+void declare_jumps(CurveSpec& spec) {
+  const auto p = index_of(spec.degree + 1);
+  for (std::size_t i = p; i + 2 * p <= spec.knots.size(); ++i) {
+    const double knot = spec.knots[i];
+    if (knot == spec.knots[i + p - 1]) spec.jumps.push_back(knot);
+  }
+}
+
+/// The domain alone, its points rounded after they were subtracted: on a short span rounding
+/// before that would be most of the slope.
+Result<NurbsCurve> hodograph_of_part(const NurbsCurve& curve, const HomogeneousCurve& part) {
+  HomogeneousCurve slope = derivative_of(part);
+  for (HomogeneousPoint& point : slope.points) point.w = 1.0;
+  CurveSpec spec{curve.name(), slope.degree, slope.dim, {}, {}, {}, false, {}};
+  slope.round_to(spec);
+  declare_jumps(spec);
+  return NurbsCurve::create(std::move(spec));
 }
 
 }  // namespace
@@ -157,11 +177,15 @@ Result<NurbsCurve> hodograph(const NurbsCurve& curve) {
   const bool is_cut = curve.is_periodic() ? !curve.is_rational() && (p == 1 || has_corner(curve))
                                           : has_idle_end(curve) || (!curve.is_rational() &&
                                                                     p == 1 && !curve.is_clamped());
-  if (is_cut) {
+  if (is_cut && p == 1) {
     auto open = sub_curve(curve, curve.u_min(), curve.u_max());
     return open ? hodograph(*open) : open;
   }
-  if (curve.is_rational()) return rational_hodograph(curve);
+  if (is_cut || curve.is_rational()) {
+    HomogeneousCurve all(curve);
+    if (is_cut) all = all.clamped_part(curve.u_min(), curve.u_max());
+    return curve.is_rational() ? rational_hodograph(curve, all) : hodograph_of_part(curve, all);
+  }
   if (p == 1) return steps_of(curve);
   const KnotSequence knots{curve.knots(), p, curve.is_periodic()};
   CurveSpec spec = curve.spec();
@@ -177,11 +201,7 @@ Result<NurbsCurve> hodograph(const NurbsCurve& curve) {
   if (!curve.is_periodic()) {
     spec.knots.erase(spec.knots.begin());
     spec.knots.pop_back();
-    // p times in degree p - 1: a jump.
-    for (std::size_t i = index_of(p); i + index_of(2 * p) <= spec.knots.size(); ++i) {
-      const double knot = spec.knots[i];
-      if (knot == spec.knots[i + index_of(p - 1)]) spec.jumps.push_back(knot);
-    }
+    declare_jumps(spec);
   }
   return NurbsCurve::create(std::move(spec));
 }

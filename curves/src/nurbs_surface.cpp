@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "knotwave/base/index.h"
 #include "knotwave/base/rt.h"
 
+#include "scaled_double.h"
 #include "span_basis.h"
 #include "spec_checks.h"
 #include "spec_layout.h"
@@ -34,21 +36,27 @@ struct Place {
 
 constexpr int kOrders = kMaxDegree + 1;
 
+/// Lengths to differentiate by, as exponents of 2: derivatives by u * 2^-u.
+struct Units {
+  int u = 0, v = 0;
+};
+
 // Partial derivatives of the weighted surface, seen from `origin`, and of its weight.
 struct WeightedPartials {
   DoubleDouble of[kOrders][kOrders][kMaxDim + 1];  // [k][l][c], the weight at c = dim
 
   WeightedPartials(const NurbsSurface& surface, const Place& u, const Place& v,
-                   std::span<const double> origin, int order) noexcept {
+                   std::span<const double> origin, int order, const Units& units) noexcept {
     const SpanBasis basis_u(sequence_u(surface), u.span, u.at);
     const SpanBasis basis_v(sequence_v(surface), v.span, v.at);
+    const double unit_u = power_of_two(-units.u), unit_v = power_of_two(-units.v);
     const int p = surface.degree_u(), q = surface.degree_v();
     for (int k = 0; k <= std::min(order, p); ++k) {
       DoubleDouble along_u[kOrders];
-      basis_u.derivative(k, along_u);
+      basis_u.derivative(k, along_u, unit_u);
       for (int l = 0; l <= std::min(order - k, q); ++l) {
         DoubleDouble along_v[kOrders];
-        basis_v.derivative(l, along_v);
+        basis_v.derivative(l, along_v, unit_v);
         const int first = (v.span - q) * surface.count_u() + u.span - p;
         for (int b = 0; b <= q; ++b) {
           for (int a = 0; a <= p; ++a) {
@@ -90,6 +98,27 @@ DoubleDouble without_weight(const WeightedPartials& weighted, const DoubleDouble
     ways_k = ways_k * (k - i) / (i + 1);
   }
   return value;
+}
+
+/// Every partial derivative of coordinate c but the value itself, to take(where it goes, value).
+template <class Take>
+void divide_by_weight(const NurbsSurface& surface, const WeightedPartials& weighted, int c,
+                      int order, const Units& units, Take take) noexcept {
+  const int dim = surface.dim();
+  DoubleDouble known[kOrders * kOrders];
+  for (int k = 0; k <= order; ++k) {
+    for (int l = 0; k + l <= order; ++l) {
+      DoubleDouble value = weighted.of[k][l][c];
+      if (surface.is_rational()) value = without_weight(weighted, known, order, k, l, c, dim);
+      value = value / weighted.of[0][0][dim];
+      known[k * (order + 1) + l] = value;
+      if (k + l == 0) continue;
+      const double derivative = std::isfinite(value.hi)
+                                    ? saturated(value.hi, -(k * units.u + l * units.v))
+                                    : std::numeric_limits<double>::quiet_NaN();
+      take(index_of((k * (order + 1) + l) * dim + c), derivative);
+    }
+  }
 }
 }  // namespace
 
@@ -158,20 +187,23 @@ void NurbsSurface::derivatives(double u, Side side_u, double v, Side side_v, int
   KNOTWAVE_ASSERT(order >= 0 && order <= kMaxDegree);
   std::fill_n(out.begin(), index_of((order + 1) * (order + 1) * dim_), 0.0);
   evaluate(u, v, out.first(index_of(dim_)));
-  const WeightedPartials weighted(*this, {sequence_u(*this), u, side_u},
-                                  {sequence_v(*this), v, side_v}, out, order);
-  for (int c = 0; c < dim_; ++c) {
-    DoubleDouble known[kOrders * kOrders];
-    for (int k = 0; k <= order; ++k) {
-      for (int l = 0; k + l <= order; ++l) {
-        DoubleDouble value = weighted.of[k][l][c];
-        if (rational_) value = without_weight(weighted, known, order, k, l, c, dim_);
-        known[k * (order + 1) + l] = value / weighted.of[0][0][dim_];
-        const int at = (k * (order + 1) + l) * dim_ + c;
-        if (k + l > 0) out[index_of(at)] = known[k * (order + 1) + l].hi;
-      }
-    }
-  }
+  const Place at_u(sequence_u(*this), u, side_u), at_v(sequence_v(*this), v, side_v);
+  const auto partials = [&](const Units& units, auto take) {
+    const WeightedPartials weighted(*this, at_u, at_v, out, order, units);
+    for (int c = 0; c < dim_; ++c) divide_by_weight(*this, weighted, c, order, units, take);
+  };
+  bool is_done = true;
+  partials({}, [&](std::size_t at, double derivative) {
+    out[at] = derivative;
+    is_done = is_done && std::isfinite(derivative);
+  });
+  if (is_done) return;
+  // Spans so short that sums pass all doubles: by the spans' lengths none does.
+  const Units spans{exponent_of(SpanBasis(sequence_u(*this), at_u.span, at_u.at).length()),
+                    exponent_of(SpanBasis(sequence_v(*this), at_v.span, at_v.at).length())};
+  partials(spans, [&](std::size_t at, double derivative) {
+    if (!std::isfinite(out[at])) out[at] = derivative;
+  });
 }
 
 NurbsCurve NurbsSurface::iso_curve_at_v(double v0) const {

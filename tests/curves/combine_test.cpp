@@ -149,6 +149,17 @@ TEST(MakeCompatible, KnotsThatRoundingMovedBecomeOne) {
   EXPECT_THAT(both->second.knots(), ElementsAreArray(first.knots()));
 }
 
+TEST(MakeCompatible, OnADomainOfAFewUlpItSaysThatKnotsFellTogether) {
+  const double low = 42.602941155433655, high = std::nextafter(low, 43.0);
+  const NurbsCurve narrow = made(spec_of(1, {0, 1}, {low, low, high, high}));
+  const auto both = make_compatible(narrow, made(spec_of(1, {0, 1, 2, 3, 4})));
+  ASSERT_FALSE(both);
+  EXPECT_EQ(both.error().code, ErrorCode::knot_multiplicity) << both.error().message;
+  const auto few = make_compatible(narrow, made(spec_of(2, {0, 1, 2})));
+  ASSERT_TRUE(few) << few.error().message;
+  EXPECT_EQ(few->second.u_max(), high);
+}
+
 TEST(MakeCompatible, AJumpOfOneIsAJumpOfBoth) {
   const auto both = make_compatible(made(spec_of(2, {0, 1, 3})), made(saw()));
   ASSERT_TRUE(both) << both.error().message;

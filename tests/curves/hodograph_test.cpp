@@ -95,6 +95,25 @@ TEST(Hodograph, OfACurveWhoseEndKnotComesOneTimeMore) {
   }
 }
 
+// The domain is cut out, and a span of 2e-7 follows its start: points rounded before they are
+// subtracted would leave 3e-9 of the slope wrong.
+TEST(Hodograph, OfAShortSpanBesideAnIdleEndKeepsItsDigits) {
+  const double short_end = 1 + 0x1p-22;
+  for (const auto& weights : {std::vector<double>(), std::vector<double>{1, 2, 1, 2, 1, 2, 1, 2}}) {
+    const NurbsCurve curve =
+        made(spec_of(3, {0.3, 0.7, -99, 0.9, 0.9, 0.9, 0.9, 0.9},
+                     {-3, -2, -1, 1, 1, short_end, 2, 2, 2, 2, 3, 4}, weights));
+    const auto slope = hodograph(curve);
+    ASSERT_TRUE(slope) << slope.error().message;
+    double exact[2];
+    curve.derivatives(1, 1, Side::right, exact);
+    if (weights.empty()) {
+      EXPECT_NEAR(exact[1], 3 * (-99 - 0.7) / (short_end + 1), 0x1p-45);
+    }
+    EXPECT_NEAR(at(*slope, 1), exact[1], 0x1p-50 * std::abs(exact[1]));
+  }
+}
+
 TEST(Hodograph, IsTheDerivativeFromEitherSide) {
   Dice dice(support::test_seed());
   int done = 0;

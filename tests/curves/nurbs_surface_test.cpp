@@ -185,6 +185,33 @@ TEST(NurbsSurface, PartialsHaveSidesAtTheSeamOfAPeriod) {
   EXPECT_EQ(right[2], at_end[2]);
 }
 
+TEST(NurbsSurface, PartialsBeyondAllDoublesAreTheLargestOne) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  SurfaceSpec spec;
+  spec.degree_u = 3;
+  spec.degree_v = 1;
+  spec.count_u = 4;
+  spec.count_v = 2;
+  spec.points = {1, -1, 1, 0, 2, -2, 2, 0};  // (1 + v) times the cubic below
+  spec.knots_u = {0, 0, 0, 0, 1e-200, 1e-200, 1e-200, 1e-200};
+  for (const bool is_rational : {false, true}) {
+    if (is_rational) spec.weights = {1, 1, 1, 1e6, 1, 1, 1, 1e6};
+    const NurbsSurface surface = made(spec);
+    for (const int order : {5, curves::kMaxDegree}) {
+      std::vector<double> rows(index_of((order + 1) * (order + 1)));
+      surface.derivatives(0, 0.5, order, rows);
+      for (const double x : rows) ASSERT_TRUE(std::isfinite(x));
+      const auto partial = [&](int k, int l) { return rows[index_of(k * (order + 1) + l)]; };
+      EXPECT_EQ(partial(0, 0), 1.5);
+      EXPECT_EQ(partial(0, 1), 1);
+      EXPECT_NEAR(partial(1, 0) / 1e200, -9, 1e-14);
+      EXPECT_NEAR(partial(1, 1) / 1e200, -6, 1e-14);
+      EXPECT_EQ(partial(2, 0), kMost);
+      EXPECT_EQ(partial(2, 1), kMost);
+    }
+  }
+}
+
 TEST(NurbsSurface, MixedPartialIsTheSlopeOfTheSlope) {
   Dice dice(support::test_seed());
   for (int round = 0; round < 300; ++round) {

@@ -118,11 +118,16 @@ TEST(CFit, IsThatOfTheLibrary) {
   const auto fitted = curves::approximate(times, values, 1, 3, 5);
   expect_same(out, fitted->curve);
   EXPECT_EQ(bound, fitted->max_error);
-  ASSERT_EQ(kw_curve_reduce_data(times, 6, values, 6, 0.2, 3, &out, &bound, nullptr), KW_OK);
+  ASSERT_EQ(kw_curve_reduce_data(times, 6, values, 6, 1, 0.2, 3, &out, &bound, nullptr), KW_OK);
   const Curve few(out);
   const auto reduced = curves::reduce_data(times, values, 0.2);
   expect_same(out, reduced->curve);
   EXPECT_EQ(bound, reduced->max_error);
+  ASSERT_EQ(kw_curve_reduce_data(times, 3, values, 6, 2, 0.2, 2, &out, &bound, nullptr), KW_OK);
+  const Curve path(out);
+  const auto both = curves::reduce_data(std::span(times).first(3), values, 0.2, 2, 2);
+  expect_same(out, both->curve);
+  EXPECT_EQ(bound, both->max_error);
   EXPECT_EQ(refused<kw_curve>(kw_curve_interpolate, values, size_t(6), 2, 2, 3).status,
             KW_VALUE_OUT_OF_RANGE);
 }

@@ -59,11 +59,12 @@ kw_status kw_curve_approximate(const double* parameters, size_t parameters_count
 }
 
 kw_status kw_curve_reduce_data(const double* times, size_t times_count, const double* values,
-                               size_t values_count, double tolerance, int32_t degree,
+                               size_t values_count, int32_t dim, double tolerance, int32_t degree,
                                kw_curve** out, double* max_error, kw_error** error) {
   return make_fitted({array("times", times, times_count), array("values", values, values_count)},
                      out, max_error, error, [&] {
                        return curves::reduce_data(numbers(times, times_count),
-                                                  numbers(values, values_count), tolerance, degree);
+                                                  numbers(values, values_count), tolerance, degree,
+                                                  dim);
                      });
 }

@@ -53,8 +53,9 @@ class NurbsSurface {
   /// All partials d^(k+l)S / du^k dv^l with k + l <= order <= kMaxDegree, to
   /// out[(order+1)*(order+1)*dim] at index (k*(order+1)+l)*dim; the rest is set to 0. [any] Correct
   /// for weights (A4.4). At a knot each direction has its own side; without, those of the spans to
-  /// the right, at the end of the domain to the left. O(order^2 (p + 1) (q + 1)) in double-double,
-  /// rational ones O(order^4) more, no allocation.
+  /// the right, at the end of the domain to the left. One beyond all doubles is the largest with
+  /// its sign, never NaN. O(order^2 (p + 1) (q + 1)) in double-double, rational ones O(order^4)
+  /// more, no allocation.
   void derivatives(double u, double v, int order, std::span<double> out) const noexcept;
   void derivatives(double u, Side side_u, double v, Side side_v, int order,
                    std::span<double> out) const noexcept;

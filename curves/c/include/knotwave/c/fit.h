@@ -22,10 +22,11 @@ KW_API kw_status kw_curve_approximate(const double* parameters, size_t parameter
                                       const double* values, size_t values_count, int32_t dim,
                                       int32_t degree, int32_t point_count, kw_curve** out,
                                       double* max_error, kw_error** error);
-/// Values of one coordinate over time as a curve with few points, everywhere within `tolerance` of
-/// the straight lines from one datum to the next. *max_error, a proved bound, may be NULL.
+/// values[n*dim] over times[n] as a curve with few points, everywhere within `tolerance` of the
+/// straight lines from one datum to the next. *max_error, a proved bound, may be NULL.
 KW_API kw_status kw_curve_reduce_data(const double* times, size_t times_count, const double* values,
-                                      size_t values_count, double tolerance, int32_t degree,
-                                      kw_curve** out, double* max_error, kw_error** error);
+                                      size_t values_count, int32_t dim, double tolerance,
+                                      int32_t degree, kw_curve** out, double* max_error,
+                                      kw_error** error);
 
 KW_END

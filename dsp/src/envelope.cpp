@@ -52,6 +52,14 @@ double Envelope::place(const EnvelopeProgram& program, double u) const KNOTWAVE_
   return folded < spec.loop_end_u ? folded : spec.loop_start_u;
 }
 
+double Envelope::place_at(const EnvelopeProgram& program, std::int64_t sample) const KNOTWAVE_RT {
+  const curves::CurveProgram& curve = program.program();
+  if (stage_ == Stage::idle) return 1;
+  const double run = place_.u + static_cast<double>(sample - place_.sample) * u_per_sample_;
+  const double u = std::clamp(place(program, run), curve.u_min(), curve.u_max());
+  return (u - curve.u_min()) / (curve.u_max() - curve.u_min());
+}
+
 Envelope::Now Envelope::now(const EnvelopeProgram& program,
                             base::SampleTime time) const KNOTWAVE_RT {
   if (stage_ == Stage::idle) return {};

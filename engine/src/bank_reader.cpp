@@ -145,7 +145,7 @@ void BankReader::read_entry(TableReader& reader, BankEntry& entry, int& patch) {
 }
 
 int BankReader::patch_index(TableReader& reader, const Node& at, const std::string& path) {
-  const std::string file = FileShelf::canonical(path);
+  const std::string file = shelf_.canonical(path);
   if (const auto known = patch_by_file_.find(file); known != patch_by_file_.end()) {
     return known->second;
   }

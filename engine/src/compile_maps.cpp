@@ -9,14 +9,10 @@
 
 #include "map_schedule.h"
 #include "patch_compiler.h"
+#include "patch_words.h"
 
 namespace knotwave::engine {
 namespace {
-
-constexpr bool moves_a_number(const MapSpec& map) {
-  return map.target == MapTarget::curve_weight || map.target == MapTarget::curve_point ||
-         map.target == MapTarget::curve_knot;
-}
 
 constexpr curves::ControlRange::Kind kind_of(MapTarget target) {
   using Kind = curves::ControlRange::Kind;

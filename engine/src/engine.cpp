@@ -120,6 +120,10 @@ bool Engine::is_playing(const BankProgram* bank) const KNOTWAVE_RT {
   return state_->performance.bank() == bank || state_->performance.slots().is_playing(bank);
 }
 
+Engine::Newest Engine::newest() const KNOTWAVE_RT {
+  return state_->performance.newest(state_->now);
+}
+
 void Engine::process(std::span<const Event> events, std::span<float> left,
                      std::span<float> right) KNOTWAVE_RT {
   process(events, left, right, {});

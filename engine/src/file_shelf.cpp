@@ -14,7 +14,8 @@ std::string FileShelf::beside(const std::string& from, const std::string& name) 
   return (fs::path(from).parent_path() / name).lexically_normal().string();
 }
 
-std::string FileShelf::canonical(const std::string& path) {
+std::string FileShelf::canonical(const std::string& path) const {
+  if (from_texts_) return fs::path(path).lexically_normal().string();
   std::error_code failed;
   const fs::path found = fs::weakly_canonical(path, failed);
   return failed ? path : found.string();
@@ -29,9 +30,27 @@ Result<std::string> FileShelf::read(const std::string& path) {
                                               : "files may not name each other in a circle"));
   }
   paths_.push_back(path);
-  auto text = base::read_file(path, base::kMaxDocumentBytes);
+  auto text = read_first(path);
   if (text) return text;
   return fail(text.error().code, "'" + path + "': " + text.error().message);
+}
+
+Result<std::string> FileShelf::read_first(const std::string& path) {
+  if (!from_texts_) {
+    auto text = base::read_file(path, base::kMaxDocumentBytes);
+    const bool is_kept = std::any_of(texts_.begin(), texts_.end(),
+                                     [&](const FileText& file) { return file.path == path; });
+    if (text && !is_kept) texts_.push_back({path, *text});
+    return text;
+  }
+  const auto given = std::find_if(given_.begin(), given_.end(),
+                                  [&](const FileText& file) { return file.path == path; });
+  if (given == given_.end()) {
+    Error error = fail(ErrorCode::file_not_found, "is not among the files that were kept");
+    error.source = path;
+    return error;
+  }
+  return given->bytes;
 }
 
 Result<const curves::CurveSet*> FileShelf::curves(const std::string& path) {

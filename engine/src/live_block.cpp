@@ -162,6 +162,7 @@ void LiveEngine::State::add_message(const PlacedMessage& placed) KNOTWAVE_RT {
       break;
     case LiveMessage::Kind::set_target:
       event.kind = Event::Kind::set_target;
+      event.midi.bytes[0] &= 15;
       event.slot = message.index;
       event.number = message.number;
       break;
@@ -225,6 +226,13 @@ void LiveEngine::State::publish_status() KNOTWAVE_RT {
     status.messages += input->heard();
     status.messages_late += input->late();
     status.messages_dropped += input->stale();
+  }
+  const Engine::Newest newest = engine->newest();
+  status.envelope_position = newest.patch == nullptr ? -1 : newest.envelope_place;
+  status.envelope_patch = -1;
+  const auto patches = playing->program->patches();
+  for (std::size_t i = 0; newest.patch != nullptr && i < patches.size(); ++i) {
+    if (patches[i].get() == newest.patch) status.envelope_patch = static_cast<int>(i);
   }
   status.tap_dropped_frames = tap.dropped_frames();
   status.latency_frames = clock.latency_frames();

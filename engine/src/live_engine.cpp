@@ -34,8 +34,12 @@ Result<void> check(const LiveConfig& config) {
 bool is_same(const JournalBank& a, const JournalBank& b) {
   return a.path == b.path &&
          std::equal(a.files.begin(), a.files.end(), b.files.begin(), b.files.end(),
-                    [](const JournalBank::File& x, const JournalBank::File& y) {
+                    [](const FileText& x, const FileText& y) {
                       return x.path == y.path && x.bytes == y.bytes;
+                    }) &&
+         std::equal(a.sounds.begin(), a.sounds.end(), b.sounds.begin(), b.sounds.end(),
+                    [](const JournalBank::Sound& x, const JournalBank::Sound& y) {
+                      return x.path == y.path && x.sha256 == y.sha256;
                     });
 }
 

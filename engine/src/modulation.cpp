@@ -53,6 +53,21 @@ Signal through_curve(const PatchProgram::MapPart& map, const Signal& u, std::siz
   return {0, scratch.shaped.data()};
 }
 
+/// What set_target events say, before any map.
+void add_targets(const ChannelTargets* targets, std::int64_t first, std::size_t n,
+                 ModulationScratch& scratch) KNOTWAVE_RT {
+  if (targets == nullptr) return;
+  for (const std::uint8_t slot : targets->slots()) {
+    const dsp::Smoother& number = targets->number(slot);
+    Signal value{number.target(), nullptr};
+    if (!number.is_still(first)) {
+      number.render(first, std::span(scratch.source).first(n));
+      value.values = scratch.source.data();
+    }
+    scratch.slots[slot] = sum(scratch.slots[slot], value, n, scratch.slot_values[slot]);
+  }
+}
+
 void add(ModulationScratch& scratch, int slot, const Signal& value, std::size_t n) KNOTWAVE_RT {
   const auto i = static_cast<std::size_t>(slot);
   scratch.slots[i] = sum(scratch.slots[i], value, n, scratch.slot_values[i]);
@@ -123,17 +138,24 @@ double Modulation::value_at_note_on(const PatchProgram::MapPart& map, const Play
     map.surface->evaluate(value, v, std::span(&value, 1));
   }
   value *= map.depth;
-  return map.is_control ? map.low + (map.high - map.low) * std::clamp(value, 0.0, 1.0) : value;
+  if (!map.is_control) return value;
+  return map.low + (map.high - map.low) * std::clamp(value, 0.0, 1.0);
 }
 
 // What the maps come to that envelopes' times hang on, of the player's present values alone.
-Modulation::SlotNumbers Modulation::numbers_at_note_on(const PatchProgram& patch) const
-    KNOTWAVE_RT {
+Modulation::SlotNumbers Modulation::numbers_at_note_on(const PatchProgram& patch,
+                                                       const NoteContext& note) const KNOTWAVE_RT {
   SlotNumbers slots{};
+  for (const ChannelTargets* targets : {note.targets, note.master_targets}) {
+    if (targets == nullptr) continue;
+    for (const std::uint8_t slot : targets->slots()) slots[slot] += targets->number(slot).target();
+  }
   for (const int index : patch.note_on_maps()) {
     const auto i = static_cast<std::size_t>(index);
     const PatchProgram::MapPart& map = patch.maps()[i];
-    slots[static_cast<std::size_t>(map.slot)] += value_at_note_on(map, players_[i], slots);
+    double& slot = slots[static_cast<std::size_t>(map.slot)];
+    const double value = value_at_note_on(map, players_[i], slots);
+    slot = map.is_control ? std::clamp(value + slot, map.low, map.high) : slot + value;
   }
   return slots;
 }
@@ -141,7 +163,7 @@ Modulation::SlotNumbers Modulation::numbers_at_note_on(const PatchProgram& patch
 void Modulation::open_gates(const PatchProgram& patch, const NoteContext& note,
                             base::SampleTime time, double rate_hz,
                             const TempoClock& tempo) KNOTWAVE_RT {
-  const SlotNumbers slots = numbers_at_note_on(patch);
+  const SlotNumbers slots = numbers_at_note_on(patch, note);
   for (std::size_t i = 0; i < patch.envelopes().size(); ++i) {
     const PatchProgram::EnvelopePart& part = patch.envelopes()[i];
     const double octaves = part.velocity_time * (127 - note.velocity) / 126.0 +
@@ -171,27 +193,32 @@ void Modulation::follow(const PatchProgram& patch, const NoteContext& note,
   }
 }
 
-void Modulation::render(const PatchProgram& patch, const TempoClock& tempo, std::int64_t first,
-                        std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT {
+void Modulation::render(const PatchProgram& patch, const NoteContext& note, const TempoClock& tempo,
+                        std::int64_t first, std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT {
   scratch.slots.fill({});
+  if (note.has_targets()) {
+    add_targets(note.targets, first, n, scratch);
+    add_targets(note.master_targets, first, n, scratch);
+  }
   for (const PatchProgram::Step& step : patch.schedule()) {
     const auto index = static_cast<std::size_t>(step.index);
     switch (step.kind) {
       case PatchProgram::Step::Kind::map:
-        render_map(patch, index, first, n, scratch);
+        render_map(patch, note, index, first, n, scratch);
         break;
       case PatchProgram::Step::Kind::envelope:
         render_envelope(patch, index, first, n, scratch);
         break;
       case PatchProgram::Step::Kind::lfo:
-        render_lfo(patch, index, tempo, first, n, scratch);
+        render_lfo(patch, note, index, tempo, first, n, scratch);
         break;
     }
   }
 }
 
-void Modulation::render_map(const PatchProgram& patch, std::size_t index, std::int64_t first,
-                            std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT {
+void Modulation::render_map(const PatchProgram& patch, const NoteContext& note, std::size_t index,
+                            std::int64_t first, std::size_t n,
+                            ModulationScratch& scratch) KNOTWAVE_RT {
   const PatchProgram::MapPart& map = patch.maps()[index];
   Player& player = players_[index];
   Signal value =
@@ -212,6 +239,13 @@ void Modulation::render_map(const PatchProgram& patch, std::size_t index, std::i
     value = mapped(value, n, scratch.shaped, [&](double x) {
       return map.low + (map.high - map.low) * std::clamp(x, 0.0, 1.0);
     });
+    if (note.is_set(map.slot)) {  // a moved number never leaves its range
+      Signal& slot = scratch.slots[static_cast<std::size_t>(map.slot)];
+      value = combined(value, slot, n, scratch.shaped, [&](double x, double set) {
+        return std::clamp(x + set, map.low, map.high);
+      });
+      slot = {};
+    }
   }
   add(scratch, map.slot, value, n);
 }
@@ -224,12 +258,12 @@ void Modulation::render_envelope(const PatchProgram& patch, std::size_t index, s
                            std::span(scratch.envelopes[index]).first(n));
 }
 
-void Modulation::render_lfo(const PatchProgram& patch, std::size_t index, const TempoClock& tempo,
-                            std::int64_t first, std::size_t n,
+void Modulation::render_lfo(const PatchProgram& patch, const NoteContext& note, std::size_t index,
+                            const TempoClock& tempo, std::int64_t first, std::size_t n,
                             ModulationScratch& scratch) KNOTWAVE_RT {
   const PatchProgram::LfoPart& part = patch.lfos()[index];
   std::span<const double> rate_factor, beats;
-  if (part.rate_moves) {
+  if (part.rate_moves || note.is_set(kSlotLfoRate + static_cast<int>(index))) {
     const Signal factor =
         limited_power_of_2(scratch.slots[kSlotLfoRate + index], n, scratch.source);
     if (factor.is_constant()) std::fill_n(scratch.source.begin(), n, factor.constant);

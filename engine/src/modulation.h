@@ -49,8 +49,8 @@ class Modulation {
   /// Lets sources glide to what the player does now, from `sample` on. [audio]
   void follow(const PatchProgram& patch, const NoteContext& note, std::int64_t sample) KNOTWAVE_RT;
   /// Fills scratch.slots and scratch.envelopes for samples first..first+n-1. [audio]
-  void render(const PatchProgram& patch, const TempoClock& tempo, std::int64_t first, std::size_t n,
-              ModulationScratch& scratch) KNOTWAVE_RT;
+  void render(const PatchProgram& patch, const NoteContext& note, const TempoClock& tempo,
+              std::int64_t first, std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT;
 
   const dsp::Envelope& envelope(int index) const KNOTWAVE_RT {
     return envelopes_[static_cast<std::size_t>(index)];
@@ -68,13 +68,15 @@ class Modulation {
   using SlotNumbers = std::array<double, kSlotCount>;
   static double value_at_note_on(const PatchProgram::MapPart& map, const Player& player,
                                  const SlotNumbers& slots) KNOTWAVE_RT;
-  SlotNumbers numbers_at_note_on(const PatchProgram& patch) const KNOTWAVE_RT;
-  void render_map(const PatchProgram& patch, std::size_t index, std::int64_t first, std::size_t n,
-                  ModulationScratch& scratch) KNOTWAVE_RT;
+  SlotNumbers numbers_at_note_on(const PatchProgram& patch,
+                                 const NoteContext& note) const KNOTWAVE_RT;
+  void render_map(const PatchProgram& patch, const NoteContext& note, std::size_t index,
+                  std::int64_t first, std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT;
   void render_envelope(const PatchProgram& patch, std::size_t index, std::int64_t first,
                        std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT;
-  void render_lfo(const PatchProgram& patch, std::size_t index, const TempoClock& tempo,
-                  std::int64_t first, std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT;
+  void render_lfo(const PatchProgram& patch, const NoteContext& note, std::size_t index,
+                  const TempoClock& tempo, std::int64_t first, std::size_t n,
+                  ModulationScratch& scratch) KNOTWAVE_RT;
 
   std::array<dsp::Envelope, kMaxVoiceEnvelopes> envelopes_;
   std::array<dsp::Lfo, kMaxLfos> lfos_;

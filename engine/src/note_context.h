@@ -6,18 +6,33 @@
 #include "knotwave/engine/mpe.h"
 #include "knotwave/engine/patch.h"
 
+#include "channel_targets.h"
+
 namespace knotwave::engine {
 
 struct NoteContext {
   const ChannelState* channel = nullptr;
   const ChannelState* master = nullptr;  ///< == channel outside MPE zones
-  double note = 60;                      ///< what sounds, transposition included
+  /// What set_target events said of the channel, and of the zone's master where that is another; or
+  /// null.
+  const ChannelTargets* targets = nullptr;
+  const ChannelTargets* master_targets = nullptr;
+  double note = 60;  ///< what sounds, transposition included
   int key = 60;
   int velocity = 100;
   int release_velocity = 64;
   base::RandomStream random;  ///< of this note
 
   bool is_mpe() const KNOTWAVE_RT { return master != channel; }
+  bool has_targets() const KNOTWAVE_RT {
+    return (targets != nullptr && !targets->is_empty()) ||
+           (master_targets != nullptr && !master_targets->is_empty());
+  }
+  /// A set_target event moves this slot.
+  bool is_set(int slot) const KNOTWAVE_RT {
+    return (targets != nullptr && targets->is_set(slot)) ||
+           (master_targets != nullptr && master_targets->is_set(slot));
+  }
 };
 
 /// The present value of a source that is neither an envelope, an LFO nor a free number. [audio]

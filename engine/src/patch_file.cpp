@@ -55,28 +55,39 @@ BankSpec bank_of(PatchSpec patch) {
   return bank;
 }
 
-Result<BankSpec> read_bank(const std::string& path) {
-  FileShelf shelf;
+namespace {
+
+Result<BankSpec> read_bank_file(const std::string& path, FileShelf& shelf) {
   const FileShelf::Link link(shelf, path);
-  const auto text = base::read_file(path, base::kMaxDocumentBytes);
+  const auto text = shelf.read_first(path);
   if (!text) return text.error();
   const auto root = base::parse_document(*text, path);
   if (!root) return root.error();
   const auto kind = curves::read_file_kind(*root, path);
   if (!kind) return kind.error();
-  if (*kind == curves::FileKind::bank) {
-    auto bank = BankReader(*root, path, shelf).read();
-    if (bank) bank->files = shelf.paths();
-    return bank;
-  }
+  if (*kind == curves::FileKind::bank) return BankReader(*root, path, shelf).read();
   if (*kind != curves::FileKind::patch) {
     return wrong_kind(*root, path, *kind, "a patch or a bank is needed here");
   }
   auto patch = read_patch(*root, path, shelf);
   if (!patch) return patch.error();
-  BankSpec bank = bank_of(std::move(*patch));
-  bank.files = shelf.paths();
+  return bank_of(std::move(*patch));
+}
+
+Result<BankSpec> read_bank_from(const std::string& path, FileShelf shelf) {
+  auto bank = read_bank_file(path, shelf);
+  if (!bank) return bank;
+  bank->files = shelf.paths();
+  bank->texts = std::move(shelf.texts());
   return bank;
+}
+
+}  // namespace
+
+Result<BankSpec> read_bank(const std::string& path) { return read_bank_from(path, FileShelf()); }
+
+Result<BankSpec> read_bank(const std::string& path, std::span<const FileText> texts) {
+  return read_bank_from(path, FileShelf(texts));
 }
 
 }  // namespace knotwave::engine

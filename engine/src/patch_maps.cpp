@@ -53,11 +53,6 @@ int whole_number(std::string_view text) {
   return status == std::errc{} && end == text.data() + text.size() ? number : -1;
 }
 
-bool is_curve_target(const MapSpec& map) {
-  return map.target == MapTarget::curve_weight || map.target == MapTarget::curve_point ||
-         map.target == MapTarget::curve_knot;
-}
-
 // Targets that are there with a section of the patch.
 bool is_section_word(std::string_view word) {
   return word == "noise" || word == "filter" || word == "shaper" || word == "crossfade";
@@ -140,7 +135,7 @@ void PatchReader::read_map(const Node& table, int number) {
   read_map_target(reader, map);
   map.smooth_s = reader.number("smooth_s", map.smooth_s, 0, 10);
   map.enabled = reader.boolean("enabled", true);
-  if (is_curve_target(map)) {
+  if (moves_a_number(map)) {
     const double least =
         map.target == MapTarget::curve_weight ? curves::kMinWeight : -curves::kMaxCoordinate;
     map.low = reader.number("low", least, curves::kMaxCoordinate);
@@ -291,7 +286,7 @@ void PatchReader::check_control_conflict(TableReader& reader, const Node& at, co
   int controls = 0;
   for (std::size_t i = 0; i < patch_.maps.size(); ++i) {
     const MapSpec& other = patch_.maps[i];
-    if (!is_curve_target(other) || other.target_curve != map.target_curve) continue;
+    if (!moves_a_number(other) || other.target_curve != map.target_curve) continue;
     ++controls;
     const bool same_kind = other.target == map.target;
     if (other.target_point != map.target_point) continue;

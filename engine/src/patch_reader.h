@@ -3,10 +3,12 @@
 #pragma once
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "knotwave/base/document.h"
+#include "knotwave/engine/bank.h"
 #include "knotwave/engine/patch.h"
 
 namespace knotwave::engine {
@@ -14,25 +16,34 @@ namespace knotwave::engine {
 /// The files around a patch: where names are looked up, what was read, who names whom.
 class FileShelf {
  public:
+  /// Reads from the disk.
+  FileShelf() = default;
+  /// Reads from `texts` alone, which must outlive the shelf.
+  explicit FileShelf(std::span<const FileText> texts) : from_texts_(true), given_(texts) {}
+
   /// The path of `name` as written in the file `from`: beside it unless absolute.
   static std::string beside(const std::string& from, const std::string& name);
   /// One spelling for one file.
-  static std::string canonical(const std::string& path);
+  std::string canonical(const std::string& path) const;
 
   /// Text of a file named by the files in chain(); errors have no source (the caller knows the
   /// place of the name): file_not_found, io_failed, file_too_large, cyclic_reference.
   Result<std::string> read(const std::string& path);
+  /// The same for the first file of all, which nobody names: its errors are about the file itself.
+  Result<std::string> read_first(const std::string& path);
   /// The curves of a file, read once. Errors of its text have its own place.
   Result<const curves::CurveSet*> curves(const std::string& path);
 
   /// The paths of all files read() was asked for.
   const std::vector<std::string>& paths() const { return paths_; }
+  /// Those that were read, with what was in them.
+  std::vector<FileText>& texts() { return texts_; }
 
   /// Keeps a file in the chain of those being read.
   class Link {
    public:
     Link(FileShelf& shelf, const std::string& path) : shelf_(shelf) {
-      shelf_.chain_.push_back(canonical(path));
+      shelf_.chain_.push_back(shelf.canonical(path));
     }
     ~Link() { shelf_.chain_.pop_back(); }
     Link(const Link&) = delete;
@@ -43,8 +54,11 @@ class FileShelf {
   };
 
  private:
+  bool from_texts_ = false;
+  std::span<const FileText> given_;
   std::vector<std::string> chain_;
   std::vector<std::string> paths_;
+  std::vector<FileText> texts_;
   std::map<std::string, curves::CurveSet> curve_files_;
 };
 

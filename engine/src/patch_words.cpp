@@ -89,46 +89,6 @@ int controller_number(std::string_view word) {
 
 bool has_noise(const PatchSpec& patch) { return patch.noise_db > kNoiseOffDb; }
 
-struct TargetChoice {
-  std::string word;
-  TargetWord target;
-};
-
-std::vector<TargetChoice> target_choices(const PatchSpec& patch) {
-  std::vector<TargetChoice> all;
-  for (const auto& [word, target] : kVoiceTargets) all.push_back({std::string(word), {target, -1}});
-  for (std::size_t i = 0; i < patch.oscillators.size(); ++i) {
-    for (const auto& [word, target] : kOscillatorTargets) {
-      all.push_back(
-          {patch.oscillators[i].name + "." + std::string(word), {target, static_cast<int>(i)}});
-    }
-  }
-  if (has_noise(patch)) {
-    for (const auto& [word, target] : kNoiseTargets) {
-      all.push_back({std::string(word), {target, kMaxOscillators}});
-    }
-  }
-  if (patch.filter_on) {
-    all.push_back({"filter.cutoff", {MapTarget::cutoff, -1}});
-    all.push_back({"filter.resonance", {MapTarget::resonance, -1}});
-  }
-  if (!patch.shaper_curve.empty()) all.push_back({"shaper.drive", {MapTarget::drive, -1}});
-  if (patch.crossfade_on) all.push_back({"crossfade", {MapTarget::crossfade, -1}});
-  for (std::size_t i = 0; i < patch.lfos.size(); ++i) {
-    all.push_back(
-        {"lfo." + patch.lfos[i].name + ".rate", {MapTarget::lfo_rate, static_cast<int>(i)}});
-  }
-  for (std::size_t i = 0; i < patch.envelopes.size(); ++i) {
-    all.push_back({"envelope." + patch.envelopes[i].name + ".time",
-                   {MapTarget::envelope_time, static_cast<int>(i)}});
-  }
-  for (std::size_t i = 0; i < patch.free_numbers.size(); ++i) {
-    all.push_back({std::string(kFreePrefix) + patch.free_numbers[i],
-                   {MapTarget::free_number, static_cast<int>(i)}});
-  }
-  return all;
-}
-
 template <class Item>
 int index_by_name(const std::vector<Item>& items, std::string_view name) {
   const auto found =
@@ -164,6 +124,41 @@ std::string suggested(std::string_view word, const std::vector<std::string>& wor
 }
 
 }  // namespace
+
+std::vector<TargetChoice> target_choices(const PatchSpec& patch) {
+  std::vector<TargetChoice> all;
+  for (const auto& [word, target] : kVoiceTargets) all.push_back({std::string(word), {target, -1}});
+  for (std::size_t i = 0; i < patch.oscillators.size(); ++i) {
+    for (const auto& [word, target] : kOscillatorTargets) {
+      all.push_back(
+          {patch.oscillators[i].name + "." + std::string(word), {target, static_cast<int>(i)}});
+    }
+  }
+  if (has_noise(patch)) {
+    for (const auto& [word, target] : kNoiseTargets) {
+      all.push_back({std::string(word), {target, kMaxOscillators}});
+    }
+  }
+  if (patch.filter_on) {
+    all.push_back({"filter.cutoff", {MapTarget::cutoff, -1}});
+    all.push_back({"filter.resonance", {MapTarget::resonance, -1}});
+  }
+  if (!patch.shaper_curve.empty()) all.push_back({"shaper.drive", {MapTarget::drive, -1}});
+  if (patch.crossfade_on) all.push_back({"crossfade", {MapTarget::crossfade, -1}});
+  for (std::size_t i = 0; i < patch.lfos.size(); ++i) {
+    all.push_back(
+        {"lfo." + patch.lfos[i].name + ".rate", {MapTarget::lfo_rate, static_cast<int>(i)}});
+  }
+  for (std::size_t i = 0; i < patch.envelopes.size(); ++i) {
+    all.push_back({"envelope." + patch.envelopes[i].name + ".time",
+                   {MapTarget::envelope_time, static_cast<int>(i)}});
+  }
+  for (std::size_t i = 0; i < patch.free_numbers.size(); ++i) {
+    all.push_back({std::string(kFreePrefix) + patch.free_numbers[i],
+                   {MapTarget::free_number, static_cast<int>(i)}});
+  }
+  return all;
+}
 
 bool is_controller_word(std::string_view word) {
   return word.size() > 2 && word.starts_with("cc") &&

@@ -38,6 +38,19 @@ struct TargetWord {
   MapTarget target = MapTarget::amp;
   int index = -1;  ///< as MapSpec::target_index
 };
+struct TargetChoice {
+  std::string word;
+  TargetWord target;
+};
+/// Every target of the patch that is no curve.
+std::vector<TargetChoice> target_choices(const PatchSpec& patch);
+
+/// Whether a map's target is a number of a curve.
+constexpr bool moves_a_number(const MapSpec& map) {
+  return map.target == MapTarget::curve_weight || map.target == MapTarget::curve_point ||
+         map.target == MapTarget::curve_knot;
+}
+
 /// The target `word` of the patch, or none; curves are left to the reader of maps.
 std::optional<TargetWord> find_target(const PatchSpec& patch, std::string_view word);
 

@@ -22,6 +22,7 @@ Performance::Performance(const EngineConfig& config)
 void Performance::reset(const BankProgram* bank) KNOTWAVE_RT {
   bank_ = bank;
   for (ChannelState& channel : channels_) channel.reset();
+  for (ChannelTargets& targets : targets_) targets.reset(config_.rate_hz);
   zones_.reset();
   for (Mono& mono : monos_) {
     mono.stack.clear();
@@ -54,8 +55,21 @@ void Performance::handle(const Event& event, base::SampleTime time) KNOTWAVE_RT 
       release_everything(time);
       break;
     case Event::Kind::set_target:
-      ++counters_.events_unknown;
+      set_target(event, time);
       break;
+  }
+}
+
+void Performance::set_target(const Event& event, base::SampleTime time) KNOTWAVE_RT {
+  ChannelTargets& targets = targets_[static_cast<std::size_t>(event.midi.channel())];
+  const std::int64_t sample = base::first_sample(time);
+  targets.forget_rested(sample);
+  if (event.slot < kSlotCount) {
+    targets.set(event.slot, event.number, sample);
+  } else if (event.slot == Event::kEverySlot) {
+    targets.go_back(sample);
+  } else {
+    ++counters_.events_unknown;
   }
 }
 
@@ -171,6 +185,7 @@ void Performance::handle_system(const base::MidiEvent& midi, base::SampleTime ti
 void Performance::reset_system(base::SampleTime time) KNOTWAVE_RT {
   for (int channel = 0; channel < kChannels; ++channel) silence(channel, time);
   for (ChannelState& channel : channels_) channel.reset();
+  for (ChannelTargets& targets : targets_) targets.go_back(base::first_sample(time));
   zones_.reset();
   sustain_was_on_.fill(false);
   sostenuto_was_on_.fill(false);
@@ -279,6 +294,18 @@ void Performance::release_everything(base::SampleTime time) KNOTWAVE_RT {
     update_pedals(channel, time);
     lift_keys(channel, time);
   }
+}
+
+Engine::Newest Performance::newest(std::int64_t sample) const KNOTWAVE_RT {
+  int newest = -1;
+  for (int i = 0; i < static_cast<int>(slots_.all().size()); ++i) {
+    const VoiceSlot& slot = slots_.at(i);
+    if (!slot.is_sounding() || (newest >= 0 && slot.age < slots_.at(newest).age)) continue;
+    newest = i;
+  }
+  if (newest < 0) return {};
+  return {slots_.at(newest).patch,
+          voices_[static_cast<std::size_t>(newest)].envelope_place(sample)};
 }
 
 void Performance::collect() KNOTWAVE_RT {

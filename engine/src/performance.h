@@ -14,6 +14,7 @@
 #include "knotwave/engine/mpe.h"
 #include "knotwave/engine/note_stack.h"
 
+#include "channel_targets.h"
 #include "tempo_clock.h"
 #include "voice.h"
 #include "voice_slots.h"
@@ -42,6 +43,7 @@ class Performance {
   EngineCounters& counters() KNOTWAVE_RT { return counters_; }
   const EngineCounters& counters() const KNOTWAVE_RT { return counters_; }
 
+  Engine::Newest newest(std::int64_t sample) const KNOTWAVE_RT;
   /// Frees voices that are done and counts the rest. Called when all are rendered up to a sample.
   void collect() KNOTWAVE_RT;
 
@@ -65,6 +67,7 @@ class Performance {
   void share_bend_range(int channel) KNOTWAVE_RT;
   void configure_mpe(int channel, int members, base::SampleTime time) KNOTWAVE_RT;
   void reset_system(base::SampleTime time) KNOTWAVE_RT;
+  void set_target(const Event& event, base::SampleTime time) KNOTWAVE_RT;
   void update_pedals(int channel, base::SampleTime time) KNOTWAVE_RT;
   void lift_keys(int channel, base::SampleTime time) KNOTWAVE_RT;
   void silence(int channel, base::SampleTime time) KNOTWAVE_RT;
@@ -109,6 +112,7 @@ class Performance {
   const EngineConfig config_;
   const BankProgram* bank_ = nullptr;
   std::array<ChannelState, kChannels> channels_;
+  std::array<ChannelTargets, kChannels> targets_;
   MpeZones zones_;
   std::array<Mono, kChannels> monos_;
   std::array<bool, kChannels> sustain_was_on_{}, sostenuto_was_on_{};

@@ -19,6 +19,7 @@ void Performance::note_on(int channel, int key, int velocity, base::SampleTime t
     return;
   }
   channels_[static_cast<std::size_t>(channel)].forget_poly_pressure(key);
+  targets_[static_cast<std::size_t>(channel)].forget_rested(base::first_sample(time));
   ++counters_.notes;
   Mono& mono = monos_[static_cast<std::size_t>(channel)];
   const bool is_mono = play_mode(channel, choice) != PlayMode::poly;
@@ -78,7 +79,10 @@ NoteContext Performance::context(int channel, int key, int velocity,
                                  std::uint32_t number) const KNOTWAVE_RT {
   NoteContext note;
   note.channel = &channels_[static_cast<std::size_t>(channel)];
-  note.master = &channels_[static_cast<std::size_t>(zones_.master_of(channel))];
+  const auto master = static_cast<std::size_t>(zones_.master_of(channel));
+  note.master = &channels_[master];
+  note.targets = &targets_[static_cast<std::size_t>(channel)];
+  note.master_targets = note.is_mpe() ? &targets_[master] : nullptr;
   note.note = choice.note;
   note.key = key;
   note.velocity = velocity;

@@ -40,6 +40,12 @@ double Voice::key_pitch_of_note() const KNOTWAVE_RT {
   return patch_->tuning().midi_pitch(start_.note.note);
 }
 
+double Voice::envelope_place(std::int64_t sample) const KNOTWAVE_RT {
+  const int amp = patch_->amp_envelope();
+  return modulation_.envelope(amp).place_at(
+      patch_->envelopes()[static_cast<std::size_t>(amp)].program, sample);
+}
+
 void Voice::start(const Start& start, const TempoClock& tempo) KNOTWAVE_RT {
   start_ = start;
   patch_ = start.patch;
@@ -74,6 +80,7 @@ void Voice::start(const Start& start, const TempoClock& tempo) KNOTWAVE_RT {
   shaper_right_.reset();
   filter_left_.reset();
   filter_right_.reset();
+  is_mono_ = patch_->is_mono();
 }
 
 void Voice::play(const NoteContext& note, base::SampleTime time, bool joins,
@@ -125,7 +132,8 @@ void Voice::render(std::int64_t first, const TempoClock& tempo, VoiceScratch& sc
 void Voice::render_chunk(std::int64_t first, std::size_t n, const TempoClock& tempo,
                          VoiceScratch& scratch, float* left, float* right) KNOTWAVE_RT {
   const dsp::Envelope amp_before = modulation_.envelope(patch_->amp_envelope());
-  modulation_.render(*patch_, tempo, first, n, scratch.modulation);
+  modulation_.render(*patch_, start_.note, tempo, first, n, scratch.modulation);
+  if (is_mono_ && start_.note.has_targets()) widen_if_panned();
   end_if_silent(amp_before, first, n);
   Signal key_pitch, pitch;
   render_pitch(first, n, scratch, key_pitch, pitch);
@@ -133,12 +141,22 @@ void Voice::render_chunk(std::int64_t first, std::size_t n, const TempoClock& te
   shape(n, scratch);
   filter(n, key_pitch, scratch);
   render_amp(first, n, scratch);
-  const bool mono = patch_->is_mono();
   for (std::size_t i = 0; i < n; ++i) {
-    const float to_right = mono ? scratch.mix_left[i] : scratch.mix_right[i];
+    const float to_right = is_mono_ ? scratch.mix_left[i] : scratch.mix_right[i];
     left[i] = scratch.mix_left[i] * scratch.gain_left[i];
     right[i] = to_right * scratch.gain_right[i];
   }
+}
+
+// No map pans a source, so that the patch was compiled as mono; a set_target event does. From here
+// on the right side is a second one, begun where the left one is.
+void Voice::widen_if_panned() KNOTWAVE_RT {
+  for (int source = 0; source < kMaxSources; ++source) {
+    if (start_.note.is_set(kSlotSourcePan + source)) is_mono_ = false;
+  }
+  if (is_mono_) return;
+  shaper_right_ = shaper_left_;
+  filter_right_ = filter_left_;
 }
 
 void Voice::render_pitch(std::int64_t first, std::size_t n, VoiceScratch& scratch,

@@ -78,6 +78,8 @@ class Voice {
   bool is_done() const KNOTWAVE_RT { return done_; }
   /// Loudness at the last sample, for the choice of what to steal. [audio]
   double level() const KNOTWAVE_RT { return level_; }
+  /// 0..1 along the amp envelope at `sample`. [audio]
+  double envelope_place(std::int64_t sample) const KNOTWAVE_RT;
   double pitch_target() const KNOTWAVE_RT { return glide_.target(); }
   const Start& begun() const KNOTWAVE_RT { return start_; }
   int take_limited_joins() KNOTWAVE_RT { return modulation_.take_limited_joins(*start_.patch); }
@@ -99,6 +101,7 @@ class Voice {
   void render_amp(std::int64_t first, std::size_t n, VoiceScratch& scratch) KNOTWAVE_RT;
   void end_if_silent(const dsp::Envelope& amp_before, std::int64_t first,
                      std::size_t n) KNOTWAVE_RT;
+  void widen_if_panned() KNOTWAVE_RT;
   double velocity_gain() const KNOTWAVE_RT;
   /// As a note number of 12-TET.
   double key_pitch_of_note() const KNOTWAVE_RT;
@@ -109,6 +112,7 @@ class Voice {
   double level_ = 0;
   bool done_ = true;
   bool detached_ = false;
+  bool is_mono_ = true;  ///< left and right do not differ before the pan of the voice
   dsp::Glide glide_;
   Fade fade_;
   dsp::Smoother bend_, velocity_gain_;

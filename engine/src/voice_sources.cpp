@@ -28,7 +28,7 @@ void to_floats(const Signal& in, std::size_t n, std::array<float, kChunk>& out) 
 void Voice::render_sources(std::int64_t first, std::size_t n, const Signal& pitch,
                            VoiceScratch& scratch) KNOTWAVE_RT {
   std::fill_n(scratch.mix_left.begin(), n, 0.0F);
-  if (!patch_->is_mono()) std::fill_n(scratch.mix_right.begin(), n, 0.0F);
+  if (!is_mono_) std::fill_n(scratch.mix_right.begin(), n, 0.0F);
   if (patch_->spec().crossfade_on) render_crossfade(n, scratch);
   for (std::size_t i = 0; i < patch_->oscillators().size(); ++i) {
     if (patch_->oscillators()[i].gain_lin != 0) render_oscillator(i, n, pitch, scratch);
@@ -37,7 +37,7 @@ void Voice::render_sources(std::int64_t first, std::size_t n, const Signal& pitc
   base::RandomStream stream = start_.note.random;
   stream.purpose = base::kRandomNoise;
   dsp::render_noise(stream, first, std::span(scratch.source_left).first(n));
-  if (!patch_->is_mono()) {
+  if (!is_mono_) {
     std::copy_n(scratch.source_left.begin(), n, scratch.source_right.begin());
   }
   mix_source(kNoiseSource, patch_->noise(), n, scratch);
@@ -98,13 +98,13 @@ void Voice::render_oscillator(std::size_t index, std::size_t n, const Signal& pi
     to_floats(place, n, scratch.control_a);
     positions = std::span(scratch.control_a).first(n);
   }
-  if (part.phase_moves) {
+  if (part.phase_moves || start_.note.is_set(kSlotSourcePhase + static_cast<int>(index))) {
     to_floats(slots[kSlotSourcePhase + index], n, scratch.control_b);
     phases = std::span(scratch.control_b).first(n);
   }
   oscillators_[index].render(*part.tables, increments, positions, phases,
                              std::span(scratch.source_left).first(n),
-                             std::span(scratch.source_right).first(patch_->is_mono() ? 0 : n));
+                             std::span(scratch.source_right).first(is_mono_ ? 0 : n));
   mix_source(static_cast<int>(index), part, n, scratch);
 }
 
@@ -127,7 +127,7 @@ void Voice::mix_source(int source, const PatchProgram::Source& part, std::size_t
     gain = product(gain, scratch.fade_gain_b, n, scratch.gain);
   }
   gain = limited_gain(gain, n, scratch.gain);
-  if (patch_->is_mono()) {
+  if (is_mono_) {
     to_floats(gain, n, scratch.gain_left);
     for (std::size_t i = 0; i < n; ++i) {
       scratch.mix_left[i] += scratch.source_left[i] * scratch.gain_left[i];
@@ -165,7 +165,7 @@ void Voice::shape(std::size_t n, VoiceScratch& scratch) KNOTWAVE_RT {
   const std::span<float> left = std::span(scratch.mix_left).first(n);
   const MovedNumbers moved = moved_numbers(patch_->shaper_slots(), n, scratch.modulation);
   shaper_left_.render(*shaper, drives, moved.all(), mix, left, left);
-  if (patch_->is_mono()) return;
+  if (is_mono_) return;
   const std::span<float> right = std::span(scratch.mix_right).first(n);
   shaper_right_.render(*shaper, drives, moved.all(), mix, right, right);
 }
@@ -189,7 +189,7 @@ void Voice::filter(std::size_t n, const Signal& key_pitch, VoiceScratch& scratch
   const std::span<const float> resonances = std::span(scratch.control_b).first(n);
   const std::span<float> left = std::span(scratch.mix_left).first(n);
   filter_left_.render(spec.filter_kind, start_.rate_hz, cutoffs, resonances, left, left);
-  if (patch_->is_mono()) return;
+  if (is_mono_) return;
   const std::span<float> right = std::span(scratch.mix_right).first(n);
   filter_right_.render(spec.filter_kind, start_.rate_hz, cutoffs, resonances, right, right);
 }

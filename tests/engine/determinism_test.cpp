@@ -14,7 +14,7 @@ namespace {
 
 using namespace scenes;  // NOLINT: the words of these tests
 
-/// Notes, bends, wheels, pedals, tempo and program changes on all channels at odd times.
+/// Notes, bends, wheels, pedals, tempo, program changes and targets on all channels at odd times.
 std::vector<Event> busy_journal(std::uint64_t seed, int count, std::int64_t frames) {
   const base::RandomStream random{seed, 0, 77};
   std::vector<Event> events;
@@ -25,7 +25,7 @@ std::vector<Event> busy_journal(std::uint64_t seed, int count, std::int64_t fram
     const std::int64_t sample = static_cast<std::int64_t>(draw(0, 1 << 30)) * frames >> 30;
     const auto fraction =
         static_cast<std::uint32_t>(random.bits(static_cast<std::uint64_t>(i * 8 + 1)));
-    const int channel = draw(2, 16), kind = draw(3, 12);
+    const int channel = draw(2, 16), kind = draw(3, 13);
     Event event = midi(sample, 0x90 | channel, 36 + draw(4, 48), 1 + draw(5, 127), fraction);
     if (kind >= 5) event.midi.bytes[0] = static_cast<std::uint8_t>(0x80 | channel);
     constexpr int kControls[] = {1, 7, 10, 11, 64, 66, 67, 74};
@@ -38,6 +38,12 @@ std::vector<Event> busy_journal(std::uint64_t seed, int count, std::int64_t fram
     } else if (kind == 11) {
       event = of_kind(sample, Event::Kind::tempo);
       event.microseconds_per_quarter = 200000 + static_cast<std::uint32_t>(draw(4, 800000));
+    } else if (kind == 12) {
+      event = of_kind(sample, Event::Kind::set_target);
+      event.midi.bytes[0] = static_cast<std::uint8_t>(channel);
+      event.slot = static_cast<std::uint16_t>(draw(4, kSlotCount + 1));
+      if (event.slot == kSlotCount) event.slot = Event::kEverySlot;
+      event.number = draw(5, 4) == 0 ? 0 : draw(6, 1000) / 250.0 - 2;
     }
     events.push_back(event);
   }

@@ -67,39 +67,13 @@ class Device {
   Sound sound_;
 };
 
-/// The events of a journal; `banks` are those of Journal::banks. The journal must outlive them.
-inline std::vector<Event> events_of(const Journal& journal,
-                                    std::span<const BankProgram* const> banks) {
-  std::vector<Event> events;
-  for (const JournalRecord& record : journal.records) {
-    Event event;
-    event.kind = record.kind;
-    event.midi.time = record.time;
-    std::copy_n(record.bytes, 3, event.midi.bytes);
-    if (record.sysex_size > 0) {
-      event.midi.sysex = record.sysex.data();
-      event.midi.sysex_size = record.sysex_size;
-    }
-    if (record.kind == Event::Kind::tempo) {
-      event.microseconds_per_quarter = static_cast<std::uint32_t>(record.number);
-    } else if (record.kind == Event::Kind::install_bank) {
-      event.bank = banks[record.index];
-    } else if (record.kind == Event::Kind::set_target) {
-      event.slot = static_cast<std::uint16_t>(record.index);
-      event.number = record.number;
-    }
-    events.push_back(event);
-  }
-  return events;
-}
-
 inline Sound played_again(const Journal& journal, std::span<const BankProgram* const> banks,
                           std::size_t frames, std::size_t block = 333) {
   const auto engine = engine_for(*banks[0], {.rate_hz = journal.rate_hz,
                                              .max_voices = journal.max_voices,
                                              .seed = journal.seed,
                                              .volume_db = journal.volume_db});
-  const Sound sound = play(*engine, events_of(journal, banks), frames, block);
+  const Sound sound = play(*engine, journal_events(journal, banks), frames, block);
   EXPECT_EQ(engine->counters().events_late, 0);
   return sound;
 }

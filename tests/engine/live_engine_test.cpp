@@ -336,6 +336,25 @@ TEST(LiveEngine, ShowsTheMomentAndThePeakSinceTheLastLook) {
   EXPECT_EQ(live->status().peak_left, 0);
 }
 
+TEST(LiveEngine, ShowsWhereTheNewestNoteIsInItsEnvelope) {
+  const auto live = live_for(bank_from(kPlain));
+  Device device(*live);
+  device.block(48);
+  EXPECT_EQ(live->status().envelope_position, -1);
+  EXPECT_EQ(live->status().envelope_patch, -1);
+  live->push(0, message(0, 0x90, 60, 127));
+  device.block(240);  // 5 ms of 60
+  EXPECT_NEAR(live->status().envelope_position, 5.0 / 60, 1e-9);
+  EXPECT_EQ(live->status().envelope_patch, 0);
+  device.block(4800);  // held at 10 ms
+  EXPECT_NEAR(live->status().envelope_position, 10.0 / 60, 1e-9);
+  live->push(0, message(0, 0x80, 60, 0));
+  device.block(1200);  // 25 ms
+  EXPECT_NEAR(live->status().envelope_position, 35.0 / 60, 1e-9);
+  device.block(4800);
+  EXPECT_EQ(live->status().envelope_position, -1);
+}
+
 TEST(LiveMessage, HoldsShortSystemExclusiveAndTellsLongByItsSize) {
   std::array<std::uint8_t, 25> data{};
   data.fill(7);

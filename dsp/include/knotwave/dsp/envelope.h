@@ -82,6 +82,9 @@ class Envelope {
   /// The curve had come to its end (or was never started) by the last sample rendered. [audio]
   bool is_idle() const KNOTWAVE_RT { return stage_ == Stage::idle; }
   bool gate_is_open() const KNOTWAVE_RT { return stage_ == Stage::gate_open; }
+  /// How far along the curve it is at `sample`, at or after the last one rendered: 0..1 of the
+  /// domain. [audio]
+  double place_at(const EnvelopeProgram& program, std::int64_t sample) const KNOTWAVE_RT;
   /// Times p1 was limited to the hull, and a brake played the rest of the slope. [audio]
   int limited_joins() const KNOTWAVE_RT { return limited_joins_; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A bank as its file says it: which patch plays which program and drum key. [control]
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,11 @@ struct BankEntry {
   double transpose_semitones = 0;
   int choke_group = 0;  ///< drums: a new note of the same group silences the old
 };
+/// A file with what was in it.
+struct FileText {
+  std::string path;
+  std::string bytes;
+};
 struct BankSpec {
   std::string name;
   std::string source_name;
@@ -30,6 +36,8 @@ struct BankSpec {
   std::vector<int> entry_patch;    ///< [entries.size()] index into patches
   /// What read_bank() read besides `source_name`: patches, curve files, tunings.
   std::vector<std::string> files;
+  /// `source_name` and `files` with what was in them, as they were read; none of parse_patch().
+  std::vector<FileText> texts;
 };
 
 /// Reads a patch or a bank and every file it names, each once (sound files are only checked to
@@ -38,6 +46,9 @@ struct BankSpec {
 /// cyclic_reference, control_conflict, not_scalar, not_a_function, file_not_found, unsupported
 /// (kind "envelope"); all with file, line and column.
 Result<BankSpec> read_bank(const std::string& path);
+/// The same from texts in place of the disk: BankSpec::texts of an earlier reading give the same
+/// bank again, whatever became of the files. A file that is not among them is not found.
+Result<BankSpec> read_bank(const std::string& path, std::span<const FileText> texts);
 
 /// A bank of one entry that plays `patch` for every program and for drums.
 BankSpec bank_of(PatchSpec patch);

@@ -77,6 +77,12 @@ class Engine {
   /// The next sample to be rendered. [audio]
   std::int64_t now() const KNOTWAVE_RT;
   const EngineCounters& counters() const KNOTWAVE_RT;
+  /// The note begun last of those that sound, for those who show it; patch null: none does. [audio]
+  struct Newest {
+    const PatchProgram* patch = nullptr;
+    double envelope_place = 0;  ///< 0..1 along its amp envelope
+  };
+  Newest newest() const KNOTWAVE_RT;
   /// Engine time 0, all state as after create(). [control, stopped]
   void reset();
 

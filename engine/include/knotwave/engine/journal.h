@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "knotwave/base/result.h"
+#include "knotwave/engine/bank.h"
 #include "knotwave/engine/event.h"
 
 namespace knotwave::engine {
@@ -26,12 +27,14 @@ struct JournalRecord {
 
 /// A bank as it was when it was installed: every file it was read from, with what was in it.
 struct JournalBank {
-  struct File {
+  /// Sounds are too large to be kept: only what tells whether they are still the same.
+  struct Sound {
     std::string path;
-    std::string bytes;
+    std::string sha256;  ///< of the file
   };
-  std::string path;         ///< of the bank or patch, one of the files
-  std::vector<File> files;  ///< text files, and sounds by their SHA-256 alone
+  std::string path;             ///< of the bank or patch, one of the files
+  std::vector<FileText> files;  ///< as BankSpec::texts
+  std::vector<Sound> sounds;
 };
 
 struct Journal {
@@ -45,9 +48,17 @@ struct Journal {
   std::string sha256;               ///< of the take's interleaved float32 samples; empty: unknown
 };
 
-/// As text (docs/journal-format.md), one record a line. [control]
+/// As text (docs/journal-format.md), one record a line. Reading it back gives the same journal.
+/// [control]
 std::string write_journal(const Journal& journal);
-/// Errors: those of documents, with line and column; unsupported_version. [control]
+/// Errors, with line and column: unsupported_version, malformed (cut off), syntax, missing_key,
+/// wrong_type, value_out_of_range (a record earlier than the one before it included), unknown_name.
+/// Memory is bounded by a few times the text. [control]
 Result<Journal> read_journal(std::string_view text, const std::string& source_name);
+
+/// The records as the engine's events. `banks` are those of Journal::banks, compiled; the journal
+/// must outlive the events. [control]
+std::vector<Event> journal_events(const Journal& journal,
+                                  std::span<const BankProgram* const> banks);
 
 }  // namespace knotwave::engine

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// Words of the journal's text that its writer and its reader share.
+#pragma once
+#include <string_view>
+
+namespace knotwave::engine {
+
+inline constexpr std::string_view kMagic = "knotwave-journal";
+inline constexpr std::string_view kEverySlotWord = "all";
+
+}  // namespace knotwave::engine

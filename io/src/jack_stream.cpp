@@ -112,6 +112,18 @@ void JackStream::look() {
   }
 }
 
+/// The ports that send to ours; what JACK keeps in shared memory.
+std::vector<std::string> sources_of(jack_client_t* client, const std::string& port) {
+  std::vector<std::string> names;
+  const char** list =
+      jack_port_get_all_connections(client, jack_port_by_name(client, port.c_str()));
+  for (const char** name = list; name != nullptr && *name != nullptr; ++name) {
+    names.emplace_back(*name);
+  }
+  jack_free(list);
+  return names;
+}
+
 AudioStatus JackStream::status() {
   using State = AudioStatus::State;
   if (lost_.empty()) look();
@@ -122,6 +134,9 @@ AudioStatus JackStream::status() {
   status.blocks = graph_->pump().blocks();
   status.xruns = graph_->news().xruns;
   status.midi_dropped = graph_->news().midi_dropped;
+  if (lost_.empty()) {
+    status.midi_sources = sources_of(graph_->client(), format_.client_name + ":midi_in");
+  }
   status.overruns = load.overruns;
   status.load = load.load;
   status.load_p99 = load.p99;

@@ -76,12 +76,13 @@ Result<BankInput> read(const std::string& path) {
   for (const engine::PatchSpec& patch : spec->patches) {
     for (auto& warning : patch_warnings(patch)) input.warnings.push_back(std::move(warning));
   }
-  const auto waves = read_waves(*spec, input.warnings);
+  auto waves = read_waves(*spec, input.warnings);
   if (!waves) return waves.error();
   for (const engine::WaveCycles& wave : *waves) input.sounds.push_back(wave.file);
   auto program = engine::BankProgram::create(*spec, *waves);
   if (!program) return std::move(program).error();
   input.spec = *std::move(spec);
+  input.waves = *std::move(waves);
   input.program = *std::move(program);
   return input;
 }

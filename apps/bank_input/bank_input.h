@@ -12,7 +12,8 @@ namespace knotwave::bank_input {
 struct BankInput {
   engine::BankSpec spec;
   std::unique_ptr<const engine::BankProgram> program;
-  std::vector<std::string> sounds;    ///< the sound files that were read
+  std::vector<engine::WaveCycles> waves;  ///< what `program` was compiled with
+  std::vector<std::string> sounds;        ///< the sound files that were read
   std::vector<std::string> warnings;  ///< of the patches, then of the sounds; each names its file
 };
 

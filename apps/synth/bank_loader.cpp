@@ -1,9 +1,86 @@
 // SPDX-License-Identifier: MIT
 #include "bank_loader.h"
 
+#include <ctime>
+#include <span>
 #include <utility>
 
+#include <sys/stat.h>
+
+#include "knotwave/base/document.h"
+#include "knotwave/base/file.h"
+#include "knotwave/base/sha256.h"
+
 namespace knotwave::synth {
+namespace {
+
+constexpr std::size_t kMaxSoundBytes = std::size_t{1} << 31;
+constexpr int kTries = 5;
+
+/// By the clock that files are stamped with.
+timespec file_time() {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME_COARSE, &now);
+  return now;
+}
+
+bool is_saved_since(const PlayableBank& bank, timespec start) {
+  for (const std::string& path : files_of(bank)) {
+    struct stat info {};
+    if (::stat(path.c_str(), &info) != 0) return true;
+    const timespec& saved = info.st_mtim;
+    if (saved.tv_sec > start.tv_sec) return true;
+    if (saved.tv_sec == start.tv_sec && saved.tv_nsec >= start.tv_nsec) return true;
+  }
+  return false;
+}
+
+/// Texts as they are, sounds by their SHA-256.
+Result<engine::JournalBank> source_of(const PlayableBank& bank) {
+  engine::JournalBank source;
+  source.path = bank.path;
+  std::vector<std::string> texts = bank.input.spec.files;
+  texts.insert(texts.begin(), bank.path);
+  for (const std::string& path : texts) {
+    auto text = base::read_file(path, base::kMaxDocumentBytes);
+    if (!text) return text.error();
+    source.files.push_back({path, *std::move(text)});
+  }
+  for (const std::string& path : bank.input.sounds) {
+    const auto bytes = base::read_file(path, kMaxSoundBytes);
+    if (!bytes) return bytes.error();
+    base::Sha256 hash;
+    hash.update(std::as_bytes(std::span(*bytes)));
+    source.files.push_back({path, hash.finish_hex()});
+  }
+  return source;
+}
+
+}  // namespace
+
+std::vector<std::string> files_of(const PlayableBank& bank) {
+  std::vector<std::string> files = bank.input.spec.files;
+  files.insert(files.end(), bank.input.sounds.begin(), bank.input.sounds.end());
+  files.push_back(bank.path);
+  return files;
+}
+
+Result<PlayableBank> read_playable(const std::string& path) {
+  PlayableBank bank;
+  bank.path = path;
+  for (int i = 0; i < kTries; ++i) {
+    const timespec start = file_time();
+    auto input = bank_input::read(path);
+    if (!input) return std::move(input).error();
+    bank.input = *std::move(input);
+    auto source = source_of(bank);
+    if (!source) return std::move(source).error();
+    bank.source = *std::move(source);
+    // What was compiled and what was read for the journal must be the same text.
+    if (!is_saved_since(bank, start)) break;
+  }
+  return bank;
+}
 
 BankLoader::BankLoader() : thread_([this] { run(); }) {}
 
@@ -24,7 +101,7 @@ void BankLoader::request(const std::string& path) {
   more_.notify_one();
 }
 
-std::optional<LoadedBank> BankLoader::take() {
+std::optional<BankLoader::Loaded> BankLoader::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(done_, std::nullopt);
 }
@@ -36,7 +113,7 @@ void BankLoader::run() {
     if (is_over_) return;
     const std::string path = *std::exchange(wish_, std::nullopt);
     lock.unlock();
-    LoadedBank loaded{path, bank_input::read(path)};
+    Loaded loaded{path, read_playable(path)};
     lock.lock();
     done_.emplace(std::move(loaded));
   }

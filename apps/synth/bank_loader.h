@@ -6,18 +6,32 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
+
+#include "knotwave/engine/journal.h"
 
 #include "bank_input/bank_input.h"
 
 namespace knotwave::synth {
 
-struct LoadedBank {
+/// A bank with what it was made of.
+struct PlayableBank {
   std::string path;
-  Result<bank_input::BankInput> bank;
+  bank_input::BankInput input;
+  engine::JournalBank source;  ///< for the journal: the bytes of the files
 };
+/// Errors: those of bank_input::read() and of reading files.
+Result<PlayableBank> read_playable(const std::string& path);
+/// Everything a bank was read from, sounds included.
+std::vector<std::string> files_of(const PlayableBank& bank);
 
 class BankLoader {
  public:
+  struct Loaded {
+    std::string path;
+    Result<PlayableBank> bank;
+  };
+
   BankLoader();
   BankLoader(const BankLoader&) = delete;
   BankLoader& operator=(const BankLoader&) = delete;
@@ -27,7 +41,7 @@ class BankLoader {
   /// A newer wish replaces one that was not begun yet.
   void request(const std::string& path);
   /// What became of a wish, each once.
-  std::optional<LoadedBank> take();
+  std::optional<Loaded> take();
 
  private:
   void run();
@@ -35,7 +49,7 @@ class BankLoader {
   std::mutex mutex_;
   std::condition_variable more_;
   std::optional<std::string> wish_;
-  std::optional<LoadedBank> done_;
+  std::optional<Loaded> done_;
   bool is_over_ = false;
   std::thread thread_;
 };

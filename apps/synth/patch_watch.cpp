@@ -40,16 +40,8 @@ std::vector<std::string> neighbours(const fs::path& file) {
 
 }  // namespace
 
-std::vector<std::string> files_of(const std::string& path, const bank_input::BankInput& bank) {
-  std::vector<std::string> files = bank.spec.files;
-  files.insert(files.end(), bank.sounds.begin(), bank.sounds.end());
-  files.push_back(path);
-  return files;
-}
-
-PatchWatch::PatchWatch(const std::string& path, const bank_input::BankInput& bank)
-    : path_(path), tried_(path) {
-  files_.watch(files_of(path, bank));
+PatchWatch::PatchWatch(const PlayableBank& bank) : path_(bank.path), tried_(bank.path) {
+  files_.watch(files_of(bank));
 }
 
 PatchWatch::News PatchWatch::poll(std::int64_t now_ns) {
@@ -71,12 +63,12 @@ PatchWatch::News PatchWatch::poll(std::int64_t now_ns) {
   return news;
 }
 
-PatchWatch::News PatchWatch::installed(bank_input::BankInput bank) {
+PatchWatch::News PatchWatch::installed(PlayableBank bank) {
   News news;
-  news.lines = bank.warnings;
+  news.lines = bank.input.warnings;
   news.lines.push_back("now playing " + path_);
   is_broken_ = false;
-  files_.watch(files_of(path_, bank));
+  files_.watch(files_of(bank));
   news.bank = std::move(bank);
   return news;
 }

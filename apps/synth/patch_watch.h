@@ -15,12 +15,12 @@ namespace knotwave::synth {
 
 class PatchWatch {
  public:
-  /// `bank` was read from `path` and plays.
-  PatchWatch(const std::string& path, const bank_input::BankInput& bank);
+  /// `bank` plays.
+  explicit PatchWatch(const PlayableBank& bank);
 
   struct News {
-    std::optional<bank_input::BankInput> bank;  ///< to be installed
-    std::vector<std::string> lines;             ///< to be told
+    std::optional<PlayableBank> bank;  ///< to be installed
+    std::vector<std::string> lines;    ///< to be told
   };
   /// Looks at the files and at what was compiled. Call it some ten times a second, and when
   /// descriptor() is ready.
@@ -36,7 +36,7 @@ class PatchWatch {
   const std::string& path() const { return path_; }
 
  private:
-  News installed(bank_input::BankInput bank);
+  News installed(PlayableBank bank);
 
   std::string path_;   ///< of what plays
   std::string tried_;  ///< what load() was given last, good or broken
@@ -45,8 +45,5 @@ class PatchWatch {
   FileWatch files_;
   BankLoader loader_;
 };
-
-/// Everything a bank was read from.
-std::vector<std::string> files_of(const std::string& path, const bank_input::BankInput& bank);
 
 }  // namespace knotwave::synth

@@ -110,8 +110,8 @@ PatchWatch::News news_of(PatchWatch& watch) {
 }
 
 TEST_F(PatchWatches, ASavedPatchIsCompiledAndABrokenOneToldWithItsPlace) {
-  const auto bank = bank_input::read(file("small.toml"));
-  PatchWatch watch(file("small.toml"), *bank);
+  const auto bank = read_playable(file("small.toml"));
+  PatchWatch watch(*bank);
   std::string text = render::kSmallPatch;
   overwrite("small.toml", text + "gain_db = -6\n");
   PatchWatch::News news = news_of(watch);
@@ -123,7 +123,7 @@ TEST_F(PatchWatches, ASavedPatchIsCompiledAndABrokenOneToldWithItsPlace) {
   news = news_of(watch);
   ASSERT_TRUE(news.bank.has_value());
   EXPECT_THAT(news.lines, Contains("now playing " + file("small.toml")));
-  EXPECT_EQ(news.bank->spec.patches[0].envelopes[0].velocity_time, 1);
+  EXPECT_EQ(news.bank->input.spec.patches[0].envelopes[0].velocity_time, 1);
 }
 
 TEST_F(PatchWatches, AFileThatAPatchNamesIsWatchedAsWell) {
@@ -131,17 +131,17 @@ TEST_F(PatchWatches, AFileThatAPatchNamesIsWatchedAsWell) {
             "format = 1\nkind = \"curve\"\n[curves.a]\ndegree = 1\npoints = [0, 1]\n");
   overwrite("uses.toml",
             std::string(render::kSmallPatch) + "[curves.b]\ncurve_file = \"curves.toml#a\"\n");
-  const auto bank = bank_input::read(file("uses.toml"));
+  const auto bank = read_playable(file("uses.toml"));
   ASSERT_TRUE(bank.has_value()) << bank.error().to_string();
-  PatchWatch watch(file("uses.toml"), *bank);
+  PatchWatch watch(*bank);
   overwrite("curves.toml",
             "format = 1\nkind = \"curve\"\n[curves.a]\ndegree = 1\npoints = [0, 2]\n");
   EXPECT_TRUE(news_of(watch).bank.has_value());
 }
 
 TEST_F(PatchWatches, TheFileThatIsMissingHealsThePatchWhenItComes) {
-  const auto bank = bank_input::read(file("small.toml"));
-  PatchWatch watch(file("small.toml"), *bank);
+  const auto bank = read_playable(file("small.toml"));
+  PatchWatch watch(*bank);
   overwrite("small.toml",
             std::string(render::kSmallPatch) + "[curves.b]\ncurve_file = \"late.toml#a\"\n");
   EXPECT_FALSE(news_of(watch).bank.has_value());
@@ -154,8 +154,8 @@ TEST_F(PatchWatches, TheNextPatchGoesRoundTheFolderPastWhatIsNone) {
   overwrite("b-curves.toml", "format = 1\nkind = \"curve\"\n");
   overwrite("c-broken.toml", "format = 1\nkind = \"patch\"\nno key\n");
   overwrite("d-faulty.toml", "format = 1\nkind = \"patch\"\nname = \"x\"\n");
-  const auto bank = bank_input::read(file("small.toml"));
-  PatchWatch watch(file("small.toml"), *bank);
+  const auto bank = read_playable(file("small.toml"));
+  PatchWatch watch(*bank);
   EXPECT_EQ(watch.next_in_folder(), file("z.toml"));
   watch.load(file("z.toml"));
   EXPECT_TRUE(news_of(watch).bank.has_value());

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#include "player.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <span>
+#include <thread>
+#include <utility>
+
+namespace knotwave::synth {
+namespace {
+
+constexpr std::int64_t kTryEveryNs = 500'000'000;
+constexpr double kFadeSeconds = 0.05;
+
+std::string device_words(const io::AudioFormat& format) {
+  return format.api + (format.device.empty() ? "" : ": " + format.device) + ", " +
+         std::to_string(std::lround(format.rate_hz)) + " Hz";
+}
+
+bool is_device_chosen(const io::AudioConfig& config) {
+  return !config.api.empty() || !config.device.empty();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Player>> Player::open(const PlayerConfig& config, PlayableBank bank) {
+  std::unique_ptr<Player> player(new Player);
+  player->config_ = config;
+  player->bank_ = std::move(bank);
+  player->mono_.resize(io::kMaxAudioBlock);
+  if (auto good = player->open_stream(config); !good) return good.error();
+  if (auto good = player->make_engine(); !good) return good.error();
+  io::MidiInputConfig midi_config = config.midi;
+  midi_config.client_name = config.audio.client_name + "-midi";  // JACK gives each name once
+  auto midi = io::MidiInputs::open(midi_config, *player);
+  const bool is_midi_chosen = !config.midi.api.empty() || !config.midi.ports.empty();
+  if (midi) {
+    player->midi_ = *std::move(midi);
+  } else if (is_midi_chosen) {
+    return midi.error();
+  } else {
+    player->first_lines_.push_back("no MIDI: " + midi.error().message);
+  }
+  if (auto good = player->stream_->start(); !good) return good.error();
+  return player;
+}
+
+Player::~Player() {
+  midi_.reset();
+  stream_.reset();
+  gate_.lead_to(nullptr);
+}
+
+Result<void> Player::open_stream(const PlayerConfig& config) {
+  auto stream = io::AudioStream::open(config.audio, *this);
+  if (!stream && stream.error().code == ErrorCode::unsupported && config.plays_without_device &&
+      !is_device_chosen(config.audio)) {
+    first_lines_.push_back(stream.error().message + "; playing without a device");
+    io::AudioConfig none = config.audio;
+    none.api = "none";
+    stream = io::AudioStream::open(none, *this);
+  }
+  if (!stream) return stream.error();
+  stream_ = *std::move(stream);
+  return {};
+}
+
+/// Of the stream's rate, playing the bank.
+Result<void> Player::make_engine() {
+  auto program = std::move(bank_.input.program);
+  if (!program) {
+    auto again = engine::BankProgram::create(bank_.input.spec, bank_.input.waves);
+    if (!again) return again.error();
+    program = *std::move(again);
+  }
+  engine::LiveConfig config;
+  config.engine = config_.engine;
+  config.engine.rate_hz = stream_->format().rate_hz;
+  auto live = engine::LiveEngine::create(config, std::move(program), bank_.source);
+  if (!live) return live.error();
+  gate_.lead_to(nullptr);
+  live_ = *std::move(live);
+  journal_ = {};
+  records_held_ = 0;
+  gate_.lead_to(live_.get());
+  return {};
+}
+
+void Player::process(const io::AudioBlock& block) KNOTWAVE_RT {
+  const auto frames = static_cast<std::size_t>(block.frames);
+  const std::span<float> left(block.outputs[0], frames);
+  if (block.outputs.size() > 1) {
+    live_->process(block.time_ns, block.midi, left, {block.outputs[1], frames});
+    return;
+  }
+  const std::span<float> right = std::span(mono_).first(frames);
+  live_->process(block.time_ns, block.midi, left, right);
+  for (std::size_t i = 0; i < frames; ++i) left[i] = 0.5f * (left[i] + right[i]);
+}
+
+void Player::message(const base::MidiEvent& event, std::int64_t time_ns) noexcept {
+  if ((left_to_stream_.load(std::memory_order_relaxed) >> event.port & 1) != 0) return;
+  port_notes_[event.port % port_notes_.size()].heard(event);
+  gate_.push(event.port, engine::live_message(event, time_ns));
+}
+
+void Player::port_lost(int port) noexcept {
+  port_notes_[static_cast<std::size_t>(port) % port_notes_.size()].release(
+      [&](std::uint8_t status, std::uint8_t first, std::uint8_t second) {
+        engine::LiveMessage message;
+        message.bytes[0] = status;
+        message.bytes[1] = first;
+        message.bytes[2] = second;
+        gate_.push(port, message);
+      });
+}
+
+void Player::tick(std::int64_t now_ns, std::vector<std::string>& told) {
+  for (std::string& line : std::exchange(first_lines_, {})) told.push_back(std::move(line));
+  live_->collect();
+  journal();
+  tell_midi(told);
+  const io::AudioStatus status = stream_->status();
+  if (!is_lost_ && status.state == io::AudioStatus::State::lost) lose(status.reason, told);
+  leave_to_stream(status.midi_sources);
+  if (is_lost_) look_for_device(now_ns, told);
+}
+
+/// Ports of JACK that are connected to the stream's own port are heard once: there.
+void Player::leave_to_stream(const std::vector<std::string>& sources) {
+  std::uint32_t bits = 0;
+  for (const auto& port : ports_) {
+    const bool is_there = std::find(sources.begin(), sources.end(), port.name) != sources.end();
+    if (port.api == "jack" && port.is_open && is_there) bits |= std::uint32_t{1} << port.port;
+  }
+  left_to_stream_.store(bits, std::memory_order_relaxed);
+}
+
+void Player::tell_midi(std::vector<std::string>& told) {
+  if (!midi_) return;
+  const bool is_changed = midi_->poll();
+  const auto notes = midi_->notes();
+  for (; notes_told_ < notes.size(); ++notes_told_) told.push_back("MIDI: " + notes[notes_told_]);
+  if (!is_changed && !ports_.empty()) return;
+  const auto ports = midi_->ports();
+  for (const auto& port : ports) {
+    const auto old = std::find_if(ports_.begin(), ports_.end(),
+                                  [&](const auto& other) { return other.port == port.port; });
+    const bool was_open = old != ports_.end() && old->is_open;
+    if (was_open == port.is_open) continue;
+    told.push_back("MIDI input '" + port.name + "' (" + port.api + ") " +
+                   (port.is_open ? "is open" : "has gone; its notes ended"));
+  }
+  ports_ = ports;
+}
+
+const engine::Journal& Player::journal() {
+  live_->take_journal(journal_);
+  for (; records_held_ < journal_.records.size(); ++records_held_) {
+    held_.add(journal_.records[records_held_]);
+  }
+  return journal_;
+}
+
+void Player::install(PlayableBank bank) {
+  live_->install(std::move(bank.input.program), bank.source);
+  bank_ = std::move(bank);
+}
+
+void Player::panic() {
+  live_->panic();
+  for (PortNotes& notes : port_notes_) notes = {};
+}
+
+/// Without the device the engine goes on by the clock: notes are released, takes go on.
+void Player::lose(const std::string& reason, std::vector<std::string>& told) {
+  is_lost_ = true;
+  lost_reason_ = reason;
+  lost_format_ = stream_->format();
+  told.push_back("the sound device is lost: " + reason +
+                 "; patch and notes are kept until it comes back");
+  stream_.reset();
+  wants_restart_ = io::AudioStream::is_poisoned();
+  io::AudioConfig none = config_.audio;
+  none.api = "none";
+  none.device.clear();
+  none.rate_hz = lost_format_.rate_hz;
+  none.block_frames = std::clamp(lost_format_.block_frames, 16, io::kMaxAudioBlock);
+  auto substitute = io::AudioStream::open(none, *this);
+  if (!substitute) return told.push_back(substitute.error().message);
+  stream_ = *std::move(substitute);
+  if (auto good = stream_->start(); !good) told.push_back(good.error().message);
+}
+
+void Player::look_for_device(std::int64_t now_ns, std::vector<std::string>& told) {
+  if (auto opened = opener_.take(); opened && *opened) {
+    take_device(**std::move(opened), told);
+    return;
+  }
+  if (now_ns < next_try_ns_ || ending_) return;
+  next_try_ns_ = now_ns + kTryEveryNs;
+  io::AudioConfig config = config_.audio;
+  // The same way as before: another one might take the card from the server that comes back.
+  config.api = lost_format_.api;
+  opener_.begin(config, *this);
+}
+
+void Player::take_device(std::unique_ptr<io::AudioStream> stream, std::vector<std::string>& told) {
+  if (stream->format().rate_hz != lost_format_.rate_hz) {
+    ending_ = std::move(stream);
+    return;
+  }
+  stream_.reset();
+  stream_ = std::move(stream);
+  start_found(told);
+}
+
+void Player::start_found(std::vector<std::string>& told) {
+  if (auto good = stream_->start(); !good) {
+    lose(good.error().message, told);
+    return;
+  }
+  is_lost_ = false;
+  told.push_back("the sound device is back: " + device_words(stream_->format()));
+}
+
+void Player::end_engine(std::vector<std::string>& told) {
+  stream_ = std::move(ending_);
+  journal();
+  const auto held = held_.messages();
+  if (auto good = make_engine(); !good) {
+    told.push_back(good.error().message);
+    return;
+  }
+  held_ = {};
+  play(held);
+  start_found(told);
+}
+
+void Player::play(const std::vector<engine::LiveMessage>& messages) {
+  for (const engine::LiveMessage& message : messages) gate_.push(kControlInput, message);
+}
+
+void Player::fade_out() {
+  live_->fade(0, static_cast<float>(kFadeSeconds));
+  const io::AudioFormat& format = stream_->format();
+  const double blocks_s = 2.0 * format.block_frames / std::max(1.0, format.rate_hz);
+  const double latency_s = std::clamp(format.latency_s, 0.0, 0.3);
+  std::this_thread::sleep_for(std::chrono::duration<double>(kFadeSeconds + std::min(blocks_s, 0.3) +
+                                                            (is_lost_ ? 0 : latency_s)));
+}
+
+void Player::describe(SynthStatus& status) {
+  status.format = is_lost_ ? lost_format_ : stream_->format();
+  status.stream = stream_->status();
+  status.is_lost = is_lost_;
+  status.lost_reason = is_lost_ ? lost_reason_ : "";
+  status.live = live_->status();
+  if (midi_) status.midi = midi_->ports();
+  const auto& patches = bank_.input.spec.patches;
+  const auto patch = static_cast<std::size_t>(std::max(0, status.live.envelope_patch));
+  if (patch >= patches.size()) return;
+  const engine::PatchSpec& spec = patches[patch];
+  status.patch_name = spec.name;
+  for (const auto& envelope : spec.envelopes) {
+    if (envelope.name == "amp") status.envelope = spec.curves.find_curve(envelope.curve);
+  }
+}
+
+}  // namespace knotwave::synth

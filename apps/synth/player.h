@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// An engine under a sound device and MIDI inputs, and what becomes of them when the device goes.
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "knotwave/engine/live_engine.h"
+#include "knotwave/io/audio_device.h"
+#include "knotwave/io/midi_input.h"
+
+#include "bank_loader.h"
+#include "engine_gate.h"
+#include "held_state.h"
+#include "port_notes.h"
+#include "status.h"
+#include "stream_opener.h"
+
+namespace knotwave::synth {
+
+struct PlayerConfig {
+  io::AudioConfig audio;
+  io::MidiInputConfig midi;
+  engine::EngineConfig engine;        ///< the rate comes from the device
+  bool plays_without_device = false;  ///< where none is chosen and none is there
+};
+
+/// [control] unless said otherwise; one thread.
+class Player final : private io::AudioClient, private io::MidiListener {
+ public:
+  /// Sounds when it returns. Errors: of the device, the MIDI inputs and the engine.
+  static Result<std::unique_ptr<Player>> open(const PlayerConfig& config, PlayableBank bank);
+  ~Player() override;
+
+  /// Looks after everything: some 20 times a second. Lines worth telling are added to `told`.
+  void tick(std::int64_t now_ns, std::vector<std::string>& told);
+
+  /// Another bank, at the next block.
+  void install(PlayableBank bank);
+  const engine::BankSpec& bank() const { return bank_.input.spec; }
+  void panic();
+  EngineGate& gate() { return gate_; }
+  engine::LiveEngine& live() { return *live_; }
+  /// All that happened since engine time 0.
+  const engine::Journal& journal();
+
+  /// Device, engine and MIDI of a status.
+  void describe(SynthStatus& status);
+  double rate_hz() const { return stream_->format().rate_hz; }
+
+  /// The device's library hangs: only a program started anew can use it. What is held is then
+  /// played into that one.
+  bool wants_restart() const { return wants_restart_; }
+  std::vector<engine::LiveMessage> held() const { return held_.messages(); }
+  void play(const std::vector<engine::LiveMessage>& messages);
+
+  /// A device with another rate needs an engine of that rate, and a take ends with its engine: asks
+  /// before the engine goes.
+  bool is_engine_ending() const { return ending_ != nullptr; }
+  void end_engine(std::vector<std::string>& told);
+
+  /// The sound goes down in 50 ms; returns when it has been heard.
+  void fade_out();
+
+ private:
+  Player() = default;
+  void process(const io::AudioBlock& block) KNOTWAVE_RT override;
+  void message(const base::MidiEvent& event, std::int64_t time_ns) noexcept override;
+  void port_lost(int port) noexcept override;
+
+  Result<void> open_stream(const PlayerConfig& config);
+  Result<void> make_engine();
+  void lose(const std::string& reason, std::vector<std::string>& told);
+  void look_for_device(std::int64_t now_ns, std::vector<std::string>& told);
+  void take_device(std::unique_ptr<io::AudioStream> stream, std::vector<std::string>& told);
+  void start_found(std::vector<std::string>& told);
+  void tell_midi(std::vector<std::string>& told);
+  void leave_to_stream(const std::vector<std::string>& sources);
+
+  PlayerConfig config_;
+  PlayableBank bank_;
+  EngineGate gate_;
+  std::unique_ptr<engine::LiveEngine> live_;
+  engine::Journal journal_;
+  std::size_t records_held_ = 0;  ///< of the journal, which held_ knows
+  HeldState held_;
+  std::unique_ptr<io::AudioStream> stream_;
+  std::unique_ptr<io::AudioStream> ending_;  ///< of another rate, waits for end_engine()
+  std::unique_ptr<io::MidiInputs> midi_;
+  std::array<PortNotes, io::kMaxMidiPorts> port_notes_;
+  /// Bit p: what MIDI port p sends comes in by the stream's own port as well, to the sample.
+  std::atomic<std::uint32_t> left_to_stream_{0};
+  StreamOpener opener_;
+  io::AudioFormat lost_format_;
+  bool is_lost_ = false, wants_restart_ = false;
+  std::string lost_reason_;
+  std::int64_t next_try_ns_ = 0;
+  std::vector<io::MidiPortStatus> ports_;  ///< as they were told
+  std::size_t notes_told_ = 0;
+  std::vector<std::string> first_lines_;
+  std::vector<float> mono_;  ///< of a single channel the other side
+};
+
+}  // namespace knotwave::synth

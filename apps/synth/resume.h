@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// What a synth hands to itself when it has to be started anew: PortAudio that hung when its device
+// vanished cannot be used again in the same process.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "knotwave/base/result.h"
+#include "knotwave/engine/live_message.h"
+
+namespace knotwave::synth {
+
+struct Resume {
+  std::string patch;  ///< empty: as the command line says
+  int takes = 0;      ///< that were begun
+  std::vector<engine::LiveMessage> held;
+};
+
+/// From the environment, where it is left by restart_program(); empty in a first start.
+Resume take_resume();
+
+/// Becomes this program again, with the same words. Returns only where that failed; the error then
+/// says why.
+Error restart_program(const Resume& resume, char** argv);
+
+}  // namespace knotwave::synth

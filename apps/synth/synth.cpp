@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "synth.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include <poll.h>
+#include <unistd.h>
+
+#include "knotwave/io/midi_file.h"
+
+namespace knotwave::synth {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kTickNs = 50 * kMs;
+
+PlayerConfig player_config(const SynthOptions& o) {
+  PlayerConfig config;
+  config.audio.api = o.audio_api;
+  config.audio.device = o.audio_device;
+  config.audio.rate_hz = o.rate_hz;
+  config.audio.block_frames = o.block_frames;
+  config.audio.latency_s = o.latency_ms / 1000;
+  config.audio.channels = o.channels;
+  config.midi.api = o.midi_api;
+  config.midi.ports = o.midi_in;
+  config.engine.seed = o.seed;
+  config.engine.threads = o.threads;
+  config.engine.volume_db = o.volume_db;
+  config.plays_without_device = !o.record.empty();
+  return config;
+}
+
+engine::LiveMessage channel_message(int status, int first, int second, std::int64_t now_ns) {
+  engine::LiveMessage message;
+  message.time_ns = now_ns;
+  message.bytes[0] = static_cast<std::uint8_t>(status);
+  message.bytes[1] = static_cast<std::uint8_t>(first);
+  message.bytes[2] = static_cast<std::uint8_t>(second);
+  return message;
+}
+
+}  // namespace
+
+Synth::Synth(const SynthOptions& options)
+    : options_(options),
+      screen_(std::make_unique<Screen>(!options.plain && !options.json_status)),
+      start_ns_(io::steady_clock_ns()) {}
+
+Result<std::unique_ptr<Synth>> Synth::open(const SynthOptions& options, PlayableBank bank,
+                                           const std::string& name, const Resume& resume) {
+  auto watch = std::make_unique<PatchWatch>(bank);
+  const std::vector<std::string> warnings = bank.input.warnings;
+  auto player = Player::open(player_config(options), std::move(bank));
+  if (!player) return player.error();
+  std::unique_ptr<OscDoor> osc;
+  if (options.osc) {
+    auto door = OscDoor::open(*options.osc, (*player)->gate());
+    if (!door) return door.error();
+    osc = *std::move(door);
+  }
+  std::unique_ptr<Synth> synth(new Synth(options));
+  synth->player_ = *std::move(player);
+  synth->watch_ = std::move(watch);
+  synth->osc_ = std::move(osc);
+  synth->name_ = name;
+  synth->takes_ = resume.takes;
+  synth->tell_all(warnings);
+  synth->player_->play(resume.held);
+  if (!options.record.empty()) {
+    synth->begin_take();
+    if (synth->has_failed_) return fail(ErrorCode::io_failed, synth->messages_.back());
+  }
+  return synth;
+}
+
+Synth::~Synth() {
+  screen_.reset();
+  for (const std::string& line : told_later_) std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+Resume Synth::resume() const {
+  return {name_.empty() ? watch_->path() : "", takes_, player_->held()};
+}
+
+Synth::End Synth::run(const std::atomic<int>& signals) {
+  for (;;) {
+    const std::int64_t now_ns = io::steady_clock_ns();
+    read_keys(now_ns);
+    if (now_ns >= next_tick_ns_) tick(now_ns);
+    const bool is_over = options_.duration_s > 0 &&
+                         static_cast<double>(now_ns - start_ns_) >= 1e9 * options_.duration_s;
+    if (signals > 0 || is_quitting_ || is_over || player_->wants_restart()) break;
+    wait(now_ns);
+  }
+  player_->fade_out();
+  end_take();
+  if (player_->wants_restart()) return End::restart;
+  return signals > 0 ? End::signal : End::asked;
+}
+
+/// Until the next tick, or until a key is typed or a note of the keyboard ends.
+void Synth::wait(std::int64_t now_ns) const {
+  std::int64_t until = next_tick_ns_;
+  if (const std::int64_t end = keyboard_.next_end_ns(); end >= 0) until = std::min(until, end);
+  const auto ms =
+      static_cast<int>(std::clamp<std::int64_t>((until - now_ns + kMs - 1) / kMs, 1, 50));
+  pollfd typed{keys_.descriptor(), POLLIN, 0};
+  ::poll(&typed, 1, ms);
+}
+
+void Synth::tick(std::int64_t now_ns) {
+  next_tick_ns_ = now_ns + kTickNs;
+  std::vector<std::string> told;
+  player_->tick(now_ns, told);
+  tell_all(told);
+  if (player_->is_engine_ending()) {
+    end_take();
+    std::vector<std::string> more;
+    player_->end_engine(more);
+    tell_all(more);
+  }
+  follow_patch();
+  follow_network();
+  follow_take();
+  show(now_ns);
+}
+
+void Synth::follow_patch() {
+  PatchWatch::News news = watch_->poll(io::steady_clock_ns());
+  if (news.bank) player_->install(*std::move(news.bank));
+  tell_all(news.lines);
+}
+
+void Synth::follow_network() {
+  if (!osc_) return;
+  OscDoor::Wishes wishes = osc_->take();
+  if (wishes.panic) player_->panic();
+  if (!wishes.patch.empty()) watch_->load(wishes.patch);
+  tell_all(wishes.lines);
+}
+
+void Synth::follow_take() {
+  if (recorder_ && recorder_->is_over()) end_take();
+}
+
+void Synth::read_keys(std::int64_t now_ns) {
+  if (!keys_.is_on()) return;
+  for (const KeyAction& action : keyboard_.type(keys_.read(), now_ns)) act(action, now_ns);
+  for (const KeyAction& action : keyboard_.expire(now_ns)) act(action, now_ns);
+}
+
+void Synth::act(const KeyAction& action, std::int64_t now_ns) {
+  using Kind = KeyAction::Kind;
+  switch (action.kind) {
+    case Kind::note_on:
+      player_->gate().push(kKeyboardInput,
+                           channel_message(0x90, action.key, Keyboard::kVelocity, now_ns));
+      break;
+    case Kind::note_off:
+      player_->gate().push(kKeyboardInput, channel_message(0x80, action.key, 64, now_ns));
+      break;
+    case Kind::octave:
+      break;
+    case Kind::panic:
+      player_->panic();
+      break;
+    case Kind::record:
+      recorder_ ? end_take() : begin_take();
+      break;
+    case Kind::next_patch:
+      next_patch();
+      break;
+    case Kind::help:
+      is_help_shown_ = !is_help_shown_;
+      if (!screen_->is_on()) tell_all(keyboard_help());
+      break;
+    case Kind::quit:
+      is_quitting_ = true;
+      break;
+  }
+}
+
+void Synth::next_patch() {
+  if (next_program()) return;
+  const auto next = watch_->next_in_folder();
+  if (!next) return tell("there is no other patch in the folder of " + watch_->path());
+  name_.clear();
+  watch_->load(*next);
+}
+
+/// Of a bank with more than one. False: it has no other.
+bool Synth::next_program() {
+  const auto& entries = player_->bank().entries;
+  const auto is_melodic = [](const engine::BankEntry& entry) { return entry.key < 0; };
+  if (std::count_if(entries.begin(), entries.end(), is_melodic) < 2) return false;
+  do {
+    program_entry_ = (program_entry_ + 1) % entries.size();
+  } while (!is_melodic(entries[program_entry_]));
+  const engine::BankEntry& entry = entries[program_entry_];
+  player_->play({channel_message(0xB0, 0, std::max(0, entry.bank_msb), 0),
+                 channel_message(0xB0, 32, std::max(0, entry.bank_lsb), 0),
+                 channel_message(0xC0, entry.program_low, 0, 0)});
+  tell("channel 1 plays program " + std::to_string(entry.program_low) + ": " + entry.patch_file);
+  return true;
+}
+
+void Synth::begin_take() {
+  ++takes_;
+  const std::string wanted = options_.record.empty() ? "take.wav" : options_.record;
+  const bool is_named = !options_.record.empty() && takes_ == 1;
+  const std::string path = is_named ? wanted : free_take_path(wanted, takes_);
+  auto recorder = Recorder::start(player_->live(), path, player_->rate_hz());
+  if (!recorder) {
+    has_failed_ = true;
+    return tell("not recording: " + recorder.error().to_string());
+  }
+  recorder_ = *std::move(recorder);
+  tell("recording " + path);
+}
+
+void Synth::end_take() {
+  if (!recorder_) return;
+  const std::unique_ptr<Recorder> recorder = std::move(recorder_);
+  const auto take = recorder->finish();
+  if (!take) {
+    has_failed_ = true;
+    return tell("the take is lost: " + take.error().to_string());
+  }
+  tell(take->path + ": " + clock_text(static_cast<double>(take->frames) / player_->rate_hz()) +
+       (take->sha256.empty() ? ", with gaps" : ", sha256 " + take->sha256));
+}
+
+}  // namespace knotwave::synth

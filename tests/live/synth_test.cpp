@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+// knotwave-synth as a player and as a service meet it: under a real JACK server, at a terminal,
+// and without either.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <lo/lo.h>
+#include <termios.h>
+
+#include "knotwave/io/audio_device.h"
+#include "knotwave/io/sound_file.h"
+
+#include "apps/render_scene.h"
+#include "live/live_clients.h"
+#include "live/synth_process.h"
+#include "support/jack_clients.h"
+#include "support/jack_server.h"
+
+namespace knotwave::synth {
+namespace {
+
+using io::seconds_until;
+using support::JackCapture;
+using support::JackMidiSender;
+using support::JackServer;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kOut1 = "Knotwave:out_1";
+constexpr const char* kOut2 = "Knotwave:out_2";
+constexpr const char* kMidiIn = "Knotwave:midi_in";
+
+class SynthProgram : public render::RenderScene {
+ protected:
+  SynthProcess::Options here() const {
+    SynthProcess::Options options;
+    options.folder = folder_.path();
+    return options;
+  }
+  SynthProcess::Options at_terminal() const {
+    SynthProcess::Options options = here();
+    options.has_terminal = true;
+    return options;
+  }
+};
+
+/// The same under a server.
+class SynthUnderJack : public SynthProgram {
+ protected:
+  void SetUp() override { ASSERT_TRUE(server_.runs()) << server_.log(); }
+
+  static JackMidiSender::Message at(std::int64_t frame, std::vector<std::uint8_t> bytes) {
+    return {frame, std::move(bytes)};
+  }
+  /// A note that is held; the sender must live as long as it is to be heard of.
+  static std::vector<JackMidiSender::Message> held_note() { return {at(0, {0x90, 69, 127})}; }
+
+  JackServer server_{256};
+};
+
+/// Where two channels begin to sound; their size if they never do.
+std::size_t onset(const std::vector<float>& samples) {
+  return static_cast<std::size_t>(
+      std::find_if(samples.begin(), samples.end(), [](float x) { return x != 0; }) -
+      samples.begin());
+}
+
+std::vector<float> channel_of(const io::Sound& sound, std::size_t channel) {
+  std::vector<float> samples;
+  for (std::size_t i = channel; i < sound.samples.size(); i += 2) {
+    samples.push_back(sound.samples[i]);
+  }
+  return samples;
+}
+
+TEST_F(SynthUnderJack, AScoreIsHeardSampleForSampleAndItsTakeRendersAgainToTheSameHash) {
+  SynthProcess synth({"small.toml", "--json-status", "--record", "take.wav"}, here());
+  ASSERT_TRUE(synth.says("recording take.wav")) << synth.err();
+  JackCapture capture({kOut1, kOut2}, 5 * 48000);
+  ASSERT_TRUE(capture.is_connected());
+  std::vector<JackMidiSender::Message> score;
+  for (int i = 0; i < 8; ++i) {
+    const auto key = static_cast<std::uint8_t>(60 + 2 * i);
+    score.push_back(at(6000 * i + 7 * i, {0x90, key, 100}));
+    score.push_back(at(6000 * i + 3000 + 5 * i, {0x80, key, 0}));
+  }
+  JackMidiSender sender(kMidiIn, score);
+  ASSERT_TRUE(sender.is_connected());
+  ASSERT_TRUE(sender.wait_until_sent(20));
+  ASSERT_TRUE(capture.wait_for(2 * 48000, 20));
+  const std::vector<float> heard[2] = {capture.channel(0), capture.channel(1)};
+  synth.signal(SIGINT);
+  EXPECT_EQ(synth.exit_code(), 130) << synth.err();
+
+  const auto take = io::read_sound(file("take.wav"));
+  ASSERT_TRUE(take.has_value()) << take.error().to_string();
+  for (std::size_t c = 0; c < 2; ++c) {
+    const std::vector<float> recorded = channel_of(*take, c);
+    const std::size_t in_take = onset(recorded), in_capture = onset(heard[c]);
+    ASSERT_LT(in_capture, heard[c].size()) << "nothing was heard";
+    const std::size_t count =
+        std::min<std::size_t>(heard[c].size() - in_capture, recorded.size() - in_take);
+    ASSERT_GT(count, 48000u);
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_EQ(heard[c][in_capture + i], recorded[in_take + i]) << c << " " << i;
+    }
+  }
+}
+
+TEST_F(SynthUnderJack, ASavedPatchIsHeardAndABrokenOneToldWhileTheOldOnePlaysOn) {
+  SynthProcess synth({"small.toml", "--json-status"}, here());
+  ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
+  JackMidiSender sender(kMidiIn, held_note());
+  ASSERT_TRUE(sender.is_connected());
+  seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 20);
+  const double loud_dbfs = synth.number("peak_left_dbfs");
+  ASSERT_GT(loud_dbfs, -30) << synth.out();
+
+  const std::string patch = render::kSmallPatch;
+  write("small.toml", patch + "no_such_key = 1\n");
+  ASSERT_TRUE(synth.says("small.toml:15:1: error: ")) << synth.err();
+  EXPECT_TRUE(synth.says("the old sound plays on"));
+  const double from = synth.number("seconds");
+  seconds_until([&] { return synth.number("seconds") > from + 1.5; }, 20);
+  EXPECT_NEAR(synth.number("peak_left_dbfs"), loud_dbfs, 0.1);
+
+  std::string quiet = patch;
+  quiet.insert(quiet.find("[curves"), "gain_db = -20\n");
+  write("small.toml", quiet);
+  ASSERT_TRUE(synth.says("now playing small.toml")) << synth.err();
+  seconds_until([&] { return synth.number("peak_left_dbfs") < loud_dbfs - 19; }, 20);
+  EXPECT_NEAR(synth.number("peak_left_dbfs"), loud_dbfs - 20, 0.2) << "of the same held note";
+}
+
+TEST_F(SynthUnderJack, AKilledServerIsToldAndAfterItsReturnTheHeldNoteSoundsWithinThreeSeconds) {
+  SynthProcess synth({"small.toml", "--json-status"}, here());
+  ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
+  {
+    JackMidiSender sender(kMidiIn, held_note());
+    ASSERT_TRUE(sender.is_connected());
+    ASSERT_TRUE(sender.wait_until_sent(10));
+    seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 20);
+  }
+  ASSERT_GT(synth.number("peak_left_dbfs"), -30);
+  server_.kill();
+  EXPECT_LT(seconds_until([&] { return synth.says("the sound device is lost", 0); }, 10), 1.0);
+  seconds_until([&] { return synth.field("state") == "lost"; }, 10);
+  EXPECT_EQ(synth.field("state"), "lost");
+  ASSERT_TRUE(server_.restart()) << server_.log();
+  const auto is_heard = [&] {
+    if (!synth.says("the sound device is back", 0)) return false;
+    JackCapture capture({kOut1}, 2048);
+    return capture.is_connected() && capture.wait_for(2048, 1) && onset(capture.channel(0)) < 2048;
+  };
+  EXPECT_LT(seconds_until(is_heard, 20), 3.0) << synth.err();
+  synth.signal(SIGTERM);
+  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+}
+
+TEST_F(SynthUnderJack, CtrlCFadesOut) {
+  SynthProcess synth({"small.toml", "--json-status"}, here());
+  ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
+  JackMidiSender sender(kMidiIn, held_note());
+  ASSERT_TRUE(sender.wait_until_sent(10));
+  seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 20);
+  JackCapture capture({kOut1}, 10 * 48000);
+  ASSERT_TRUE(capture.wait_for(4800, 10));
+  synth.signal(SIGINT);
+  EXPECT_EQ(synth.exit_code(), 130);
+  const std::vector<float> heard = capture.channel(0);
+  const auto last = std::find_if(heard.rbegin(), heard.rend(), [](float x) { return x != 0; });
+  const auto end = static_cast<std::size_t>(heard.rend() - last);
+  const auto peak = [&](std::size_t from, std::size_t to) {
+    float most = 0;
+    for (std::size_t i = from; i < to; ++i) most = std::max(most, std::abs(heard[i]));
+    return most;
+  };
+  ASSERT_GT(end, 4800u);
+  const float before = peak(0, 2400);
+  EXPECT_GT(before, 0.05f);
+  EXPECT_LT(peak(end - 100, end), 0.06f * before) << "the last 2 ms of 50";
+  EXPECT_GT(peak(end - 2400, end - 1900), 0.5f * before) << "not cut before that";
+}
+
+TEST_F(SynthProgram, RunsHeadlessWithoutStandardInputAndEndsAsAServiceIsEnded) {
+  SynthProcess::Options options = here();
+  options.is_stdin_closed = true;
+  SynthProcess synth({"small.toml", "--audio-api", "none", "--plain"}, options);
+  ASSERT_TRUE(synth.says("running, small.toml")) << synth.err();
+  synth.signal(SIGTERM);
+  EXPECT_EQ(synth.exit_code(), 0);
+  EXPECT_THAT(synth.out(), Not(HasSubstr("\x1b"))) << "no page where there is no terminal";
+}
+
+TEST_F(SynthProgram, EndsByItselfAfterItsDuration) {
+  SynthProcess synth({"small.toml", "--audio-api", "none", "--duration", "0.3"}, here());
+  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+}
+
+TEST_F(SynthProgram, WithoutADeviceSaysWhatToDoAndRecordsAllTheSame) {
+  support::NoJackServer none;
+  SynthProcess refused({"small.toml"}, here());
+  EXPECT_EQ(refused.exit_code(), 1);
+  EXPECT_THAT(refused.err(), HasSubstr("no sound device"));
+  EXPECT_THAT(refused.err(), HasSubstr("--record FILE"));
+  SynthProcess synth({"small.toml", "--record", "a.wav", "--duration", "0.3"}, here());
+  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+  EXPECT_THAT(synth.err(), HasSubstr("playing without a device"));
+  EXPECT_GT(io::read_sound(file("a.wav"))->frames, 4800);
+}
+
+TEST_F(SynthProgram, PlaysWhatOscSaysAndTellsWhatItDoesNotUnderstandOnce) {
+  SynthProcess synth({"small.toml", "--audio-api", "none", "--json-status", "--osc", "47391"},
+                     here());
+  ASSERT_TRUE(synth.says("\"osc\": \"127.0.0.1:47391\"")) << synth.err();
+  lo_address to = lo_address_new("127.0.0.1", "47391");
+  lo_send(to, "/note", "ii", 69, 127);
+  seconds_until([&] { return synth.number("voices") == 1; }, 20);
+  EXPECT_EQ(synth.number("voices"), 1);
+  EXPECT_EQ(synth.field("last_midi"), "note on A4 (69), velocity 127, channel 1");
+  for (int i = 0; i < 3; ++i) lo_send(to, "/nota", "");
+  ASSERT_TRUE(synth.says("OSC /nota means nothing here; did you mean '/note'?"));
+  write("other.toml", render::kSmallPatch);
+  lo_send(to, "/patch", "s", "other.toml");
+  ASSERT_TRUE(synth.says("now playing other.toml"));
+  lo_send(to, "/panic", "");
+  seconds_until([&] { return synth.number("voices") == 0; }, 20);
+  EXPECT_EQ(synth.number("voices"), 0);
+  const std::string told = synth.err();
+  EXPECT_EQ(told.find("OSC /nota"), told.rfind("OSC /nota")) << told;
+  lo_address_free(to);
+
+  SynthProcess second({"small.toml", "--audio-api", "none", "--osc", "47391"}, here());
+  EXPECT_EQ(second.exit_code(), 1);
+  EXPECT_THAT(second.err(), HasSubstr("OSC at 127.0.0.1:47391: the port is in use"));
+}
+
+TEST_F(SynthProgram, KeysOfATerminalPlayAndTheTerminalIsPutBack) {
+  write("z.toml", render::kSmallPatch);
+  SynthProcess synth({"small.toml", "--audio-api", "none"}, at_terminal());
+  termios during{}, after{};
+  ASSERT_TRUE(synth.says("octave 4")) << synth.out();
+  tcgetattr(synth.terminal(), &during);
+  EXPECT_EQ(during.c_lflag & static_cast<tcflag_t>(ICANON | ECHO), 0u);
+  synth.type("h");
+  EXPECT_TRUE(synth.says("note on A4 (69), velocity 96"));
+  EXPECT_TRUE(synth.says("note off A4 (69)")) << "by itself, as terminals tell no key-ups";
+  synth.type("+h");
+  EXPECT_TRUE(synth.says("note on A5 (81), velocity 96"));
+  synth.type("\t");
+  EXPECT_TRUE(synth.says("now playing z.toml")) << synth.out();
+  synth.type("r");
+  EXPECT_TRUE(synth.says("recording take.wav"));
+  synth.type("r");
+  EXPECT_TRUE(synth.says("take.wav: 0:0"));
+  EXPECT_TRUE(std::filesystem::exists(file("take.wav")));
+  synth.type("?");
+  EXPECT_TRUE(synth.says("letters are white keys"));
+  synth.type("q");
+  EXPECT_EQ(synth.exit_code(), 0);
+  tcgetattr(synth.terminal(), &after);
+  EXPECT_EQ(after.c_lflag & static_cast<tcflag_t>(ICANON | ECHO),
+            static_cast<tcflag_t>(ICANON | ECHO));
+  EXPECT_TRUE(synth.says("\x1b[?25h")) << "the cursor is shown again";
+  EXPECT_TRUE(synth.says("\x1b[?1049l"));
+}
+
+TEST_F(SynthProgram, TheTerminalIsPutBackWhenASignalKillsIt) {
+  for (const int signal : {SIGTERM, SIGQUIT, SIGABRT}) {
+    SynthProcess synth({"small.toml", "--audio-api", "none"}, at_terminal());
+    ASSERT_TRUE(synth.says("octave 4"));
+    synth.signal(signal);
+    EXPECT_EQ(synth.exit_code(), signal == SIGTERM ? 0 : 128 + signal);
+    termios after{};
+    tcgetattr(synth.terminal(), &after);
+    EXPECT_NE(after.c_lflag & static_cast<tcflag_t>(ECHO), 0u) << signal;
+    EXPECT_TRUE(synth.says("\x1b[?1049l")) << signal;
+  }
+}
+
+}  // namespace
+}  // namespace knotwave::synth

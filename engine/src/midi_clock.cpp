@@ -35,18 +35,18 @@ SampleTime later(SampleTime time, double samples) KNOTWAVE_RT {
       static_cast<std::uint32_t>(fraction)};
 }
 
-/// The mean of the intervals that are within a quarter of their median.
+/// The mean of the intervals near their median, if most are; else 0.
 double usual(std::array<double, MidiClock::kDoubtedClocks> intervals) KNOTWAVE_RT {
   std::sort(intervals.begin(), intervals.end());
   const double median = intervals[intervals.size() / 2];
   double sum = 0;
   int count = 0;
   for (const double interval : intervals) {
-    if (std::abs(interval - median) > 0.25 * median) continue;
+    if (std::abs(interval - median) > 0.15 * median) continue;
     sum += interval;
     ++count;
   }
-  return count == 0 ? median : sum / count;
+  return 4 * count >= 3 * MidiClock::kDoubtedClocks ? sum / count : 0;
 }
 
 }  // namespace
@@ -165,13 +165,12 @@ void MidiClock::follow(double error) KNOTWAVE_RT {
 void MidiClock::doubt(SampleTime time, std::int64_t assumed, bool fits) KNOTWAVE_RT {
   if (doubt_.came == 0 && fits) return;
   doubt_.intervals[static_cast<std::size_t>(doubt_.came++)] = between(last_, time);
-  doubt_.misfits += static_cast<int>(!fits);
   doubt_.assumed += assumed;
   if (doubt_.came < kDoubtedClocks) return;
   const Doubt seen = doubt_;
   doubt_ = {};
   const double period = usual(seen.intervals);
-  if (seen.misfits < 2 || std::abs(period / period_ - 1) < 0.05) return;
+  if (period == 0 || std::abs(period / period_ - 1) < 0.05) return;
   ++restarts_;
   const std::int64_t mistaken = seen.came - seen.assumed;
   if (mistaken < 0) missing_ += mistaken;

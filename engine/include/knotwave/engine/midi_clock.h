@@ -73,7 +73,7 @@ class MidiClock {
 
   /// A few clocks in a row, looked at because the first did not fit: are they another tempo?
   struct Doubt {
-    int came = 0, misfits = 0;
+    int came = 0;
     std::int64_t assumed = 0;  ///< as many were counted
     std::array<double, kDoubtedClocks> intervals{};
   };

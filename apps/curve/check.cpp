@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
+#include "knotwave/engine/midi_learn.h"
+
 #include "bank_input/bank_input.h"
 #include "curve_input.h"
 #include "verbs.h"
@@ -24,6 +26,11 @@ Result<std::string> checked(const std::string& path) {
     const auto set = curves::parse_curves(file->text, path);
     if (!set) return set.error();
     return "curve file, " + count_of(*set);
+  }
+  if (file->kind == curves::FileKind::midi_learn) {
+    const auto learnt = engine::parse_midi_learn(file->text, path);
+    if (!learnt) return learnt.error();
+    return "MIDI learn file, " + count_of(learnt->knobs.size(), "knob");
   }
   // Compiled as for playing: what is ok here can be rendered.
   const auto bank = bank_input::read(path);

@@ -30,6 +30,11 @@ Result<curves::CurveSet> read_set(const std::string& path) {
     error.source = path;
     return error;
   }
+  if (file->kind == curves::FileKind::midi_learn) {
+    Error error = fail(ErrorCode::unsupported, "a MIDI learn file holds no curves");
+    error.source = path;
+    return error;
+  }
   auto bank = engine::read_bank(path);
   if (!bank) return bank.error();
   return std::move(bank->patches.front().curves);

@@ -101,6 +101,19 @@ TEST_F(CurveApp, ChecksEveryKindOfFileThatIsShipped) {
   }
 }
 
+TEST_F(CurveApp, ChecksMidiLearnFiles) {
+  const std::string path = folder_.file("desk.toml");
+  ASSERT_TRUE(base::write_file(path,
+                               "format = 1\nkind = \"midi-learn\"\n[[knobs]]\nfrom = 21\n"
+                               "to = 74\n"));
+  EXPECT_EQ(run({"check", path}).out, path + ": ok: MIDI learn file, 1 knob\n");
+  EXPECT_THAT(run({"info", path}).err, HasSubstr("a MIDI learn file holds no curves"));
+  ASSERT_TRUE(base::write_file(path, "format = 1\nkind = \"midi-learn\"\nknob = 3\n"));
+  const ProgramRun wrong = run({"check", path});
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.err, HasSubstr(path + ":3:1: error: MIDI learn file: unknown key 'knob'"));
+}
+
 TEST_F(CurveApp, CheckNamesThePlaceOfAFaultAndGoesOn) {
   const std::string bad = folder_.file("bad.toml");
   ASSERT_TRUE(base::write_file(bad,

@@ -14,21 +14,8 @@ namespace {
 // The largest MIDI buffer of jackd 1.9.21 is 32 KiB and an event takes 12 bytes of it or more:
 // 2730.
 constexpr std::size_t kMaxMidiEvents = 4096;
-constexpr std::int64_t kOldestCycle_us = 1'000'000, kNewestCycle_us = -500'000;
 
 }  // namespace
-
-void JackClock::advance(const Cycle& cycle, std::int64_t now_ns) KNOTWAVE_RT {
-  // A difference beyond half the circle is a step back: the server's clock was set anew.
-  const jack_nframes_t moved = cycle.frame_time - last_;
-  const bool is_step_back = moved > 0x7FFFFFFFU;
-  if (has_begun_) frame_ += is_step_back ? last_frames_ : std::max(moved, last_frames_);
-  has_begun_ = true;
-  last_ = cycle.frame_time;
-  last_frames_ = cycle.frames;
-  const bool is_sane = cycle.age_us >= kNewestCycle_us && cycle.age_us <= kOldestCycle_us;
-  time_ns_ = std::max(time_ns_, now_ns - (is_sane ? cycle.age_us * 1000 : 0));
-}
 
 JackGraph::JackGraph(JackClient client, AudioClient& audio, int channels)
     : pump_(audio, jack_get_sample_rate(client.get()), channels),

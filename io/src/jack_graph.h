@@ -8,30 +8,10 @@
 #include <jack/jack.h>
 
 #include "block_pump.h"
+#include "cycle_clock.h"
 #include "jack_devices.h"
 
 namespace knotwave::io {
-
-/// Where a block stands in time, from what JACK says of its cycle.
-class JackClock {
- public:
-  struct Cycle {
-    jack_nframes_t frame_time = 0;  ///< at its begin; wraps
-    std::int64_t age_us = 0;        ///< since its begin
-    jack_nframes_t frames = 0;
-  };
-  /// The next cycle. Frames begin at 0, never overlap and jump over cycles that were skipped; times
-  /// never go back. An age beyond a second, or before half a second from now, is taken as 0.
-  /// [audio]
-  void advance(const Cycle& cycle, std::int64_t now_ns) KNOTWAVE_RT;
-  std::int64_t frame() const KNOTWAVE_RT { return frame_; }
-  std::int64_t time_ns() const KNOTWAVE_RT { return time_ns_; }
-
- private:
-  bool has_begun_ = false;
-  jack_nframes_t last_ = 0, last_frames_ = 0;
-  std::int64_t frame_ = 0, time_ns_ = 0;
-};
 
 /// The client's part in the graph; its address is what JACK calls back with.
 class JackGraph {
@@ -62,7 +42,7 @@ class JackGraph {
 
   News news_;
   BlockPump pump_;
-  JackClock clock_;
+  CycleClock clock_;
   std::vector<jack_port_t*> outputs_;
   jack_port_t* midi_ = nullptr;
   std::vector<float*> buffers_;

@@ -125,5 +125,38 @@ TEST(PacedStream, FramesGoOnAfterStopAndStart) {
   EXPECT_GE(calls[first].time_ns, calls[first - 1].time_ns + 20'000'000 - 64'000'000'000 / 48000);
 }
 
+TEST(PacedStream, WhatIsLateIsMadeUpForUnlessItIsMoreThanASecond) {
+  class SleepyClient : public RampClient {
+   public:
+    void process(const AudioBlock& block) KNOTWAVE_RT override {
+      RampClient::process(block);
+      if (block.frame == 4800) std::this_thread::sleep_for(300ms);
+      if (block.frame == 24000) std::this_thread::sleep_for(2300ms);
+    }
+  } client;
+  auto stream = AudioStream::open({.api = "none", .block_frames = 480}, client);
+  ASSERT_TRUE(stream) << stream.error().message;
+  ASSERT_TRUE((*stream)->start());
+  client.wait_for(60);
+  (*stream)->stop();
+  const auto calls = client.calls();
+  for (std::size_t i = 0; i <= 50; ++i) {
+    ASSERT_EQ(calls[i].frame, static_cast<std::int64_t>(480 * i));
+  }
+  EXPECT_GE(calls[51].frame, 24480 + 48000);  // what was slept through
+  for (std::size_t i = 52; i < calls.size(); ++i) {
+    ASSERT_EQ(calls[i].frame, calls[i - 1].frame + 480);
+  }
+  for (std::size_t i = 1; i < calls.size(); ++i) {
+    const std::int64_t frames = calls[i].frame - calls[i - 1].frame;
+    ASSERT_NEAR(static_cast<double>(calls[i].time_ns - calls[i - 1].time_ns),
+                static_cast<double>(frames) / 48000 * 1e9, 2);
+  }
+  const AudioStatus status = (*stream)->status();
+  EXPECT_GE(status.xruns, 1);
+  EXPECT_GE(status.overruns, 2);
+  EXPECT_GE(status.load_max, 230);
+}
+
 }  // namespace
 }  // namespace knotwave::io

@@ -188,5 +188,25 @@ TEST_F(JackStreamTest, TheBlockSizeIsFollowed) {
   expect_numbered_without_a_gap(capture, 1);
 }
 
+TEST_F(JackStreamTest, ABlockThatComesLateIsAnOverrunAndAnXrun) {
+  class LateClient : public NumberedClient {
+   public:
+    void process(const AudioBlock& block) KNOTWAVE_RT override {
+      if (blocks() == 20) std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      NumberedClient::process(block);
+    }
+  } client;
+  const auto stream = opened({}, client);
+  ASSERT_TRUE(stream);
+  ASSERT_TRUE(stream->start());
+  EXPECT_LT(seconds_until([&] { return client.blocks() > 40; }, 20), 20);
+  stream->stop();
+  const AudioStatus status = stream->status();
+  EXPECT_GE(status.overruns, 1);
+  EXPECT_GE(status.xruns, 1);
+  EXPECT_GE(status.load_max, 300.0 / (1024 / 48.0));
+  EXPECT_EQ(client.overlaps(), 0);
+}
+
 }  // namespace
 }  // namespace knotwave::io

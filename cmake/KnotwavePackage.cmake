@@ -24,8 +24,9 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS knotwave-dev)
 set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "synthesizer whose sounds are NURBS curves
 A curve, kept as a few control points in a text file, can be an envelope, an
 LFO, one cycle of a waveform, a row of a morphing surface, a crossfade law or
-a waveshaper. The programs play such sounds from MIDI, the same samples on
-every machine, and check, draw, edit and fit curves.")
+a waveshaper. The programs play such sounds live from MIDI and OSC, render MIDI
+files, to the same samples on every machine, and check, draw, edit and fit
+curves.")
 
 # The shared library is that of the C interface: none of the programs uses it.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME knotwave-dev)

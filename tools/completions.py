@@ -180,10 +180,11 @@ def zsh_arguments(function, help):
         about = zsh_about(option.about)
         action = f":{zsh_about(option.type)}:{zsh_place(function, option.place)}" if option.type else ""
         if len(option.names) > 1:
-            given = f"'({' '.join(option.names)})'{{{','.join(option.names)}}}"
+            given = f"'({' '.join(option.names)})'{{{','.join(option.names)}}}"  # either, once
             yield given + zsh_quoted(f"[{about}]{action}")
         else:
-            yield zsh_quoted(f"{option.names[0]}[{about}]{action}")
+            times = "*" if "given again" in option.about else ""
+            yield zsh_quoted(f"{times}{option.names[0]}[{about}]{action}")
     if help.commands:
         yield "'1: :->command'"
         yield "'*:: :->words'"

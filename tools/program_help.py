@@ -63,7 +63,7 @@ def place_of(kind, about):
     place.is_file = bool(FILE_TYPES & set(parts))
     place.is_curve = place.is_file and "FILE#NAME" in about
     if place.is_file:
-        place.endings = re.findall(r"(?<![\w.])\.([a-z]+)\b", about) or (["toml"] if place.is_curve else [])
+        place.endings = re.findall(r"(?<![\w.])\.([a-z]+)\b", about.partition(", with ")[0]) or (["toml"] if place.is_curve else [])
     listed = re.search(r": ([a-z0-9_-]+(?:, [a-z0-9_-]+)+)$", about)
     if kind == "NAME" and listed:
         place.words = listed[1].split(", ")

@@ -33,6 +33,8 @@ CASES = {
     "knotwave-render --stems s": {"sounds"},
     "knotwave-render bell.toml no": {"notes.MID"},
     "knotwave-render --rate ": set(),
+    "knotwave-synth be": {"bell.toml"},
+    "knotwave-synth --midi-l": {"--midi-learn"},
     "knotwave-curve ev": {"eval"},
     "knotwave-curve in": {"info", "insert-knot"},
     "knotwave-curve eval --gr": {"--grid"},

@@ -74,6 +74,9 @@ void Keyboard::type_key(char key, std::int64_t now_ns, std::vector<KeyAction>& a
     case '\t':
       actions.push_back({Kind::next_patch, 0});
       break;
+    case 'm':
+      actions.push_back({Kind::learn, 0});
+      break;
     case '?':
       actions.push_back({Kind::help, 0});
       break;
@@ -109,7 +112,8 @@ std::vector<std::string> keyboard_help() {
           "",
           " + -    octave up, down         tab    next patch",
           " space  all notes off           r      record, stop recording",
-          " ?      this help               q      quit (Ctrl-C as well)"};
+          " m      learn a MIDI controller ?      this help",
+          " q      quit (Ctrl-C as well)"};
 }
 
 }  // namespace knotwave::synth

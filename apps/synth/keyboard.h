@@ -11,7 +11,7 @@
 namespace knotwave::synth {
 
 struct KeyAction {
-  enum class Kind { note_on, note_off, octave, panic, record, next_patch, help, quit };
+  enum class Kind { note_on, note_off, octave, panic, record, next_patch, learn, help, quit };
   Kind kind = Kind::quit;
   int key = 0;  ///< of notes: 0..127; of octave: the one the row of letters begins with
 

@@ -95,7 +95,8 @@ int play(const SynthOptions& options, char** argv) {
   auto synth = Synth::open(options, *std::move(bank), name, resume);
   if (!synth) return say(synth.error());
   const Synth::End end = (*synth)->run(signals);
-  const Resume next = (*synth)->resume();
+  Resume next = (*synth)->resume();
+  if (demo) next.patch.clear();  // its files go with this process
   const bool has_failed = (*synth)->has_failed();
   synth->reset();
   demo.reset();

@@ -3,10 +3,7 @@
 
 #include <utility>
 
-#if __has_include("knotwave/engine/target_words.h")
 #include "knotwave/engine/target_words.h"
-#define HAVE_WORDS 1
-#endif
 
 namespace knotwave::synth {
 
@@ -31,13 +28,9 @@ void OscDoor::message(std::string_view address, std::span<const io::OscArgument>
   const std::lock_guard lock(mutex_);
   const auto target = [this](std::string_view name) -> Result<std::uint16_t> {
     if (!patch_) return fail(ErrorCode::unknown_name, "no patch plays");
-#ifdef HAVE_WORDS
     const auto slot = engine::find_slot(*patch_, name);
     if (!slot) return slot.error();
     return static_cast<std::uint16_t>(*slot);
-#else
-    return fail(ErrorCode::unknown_name, std::string(name));
-#endif
   };
   auto command = osc_command(address, arguments, time_ns, target);
   if (!command) {

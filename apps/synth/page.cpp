@@ -62,6 +62,10 @@ PageLine midi(const SynthStatus& status) {
   }
   if (status.format.has_midi) text += (text.empty() ? "" : ", ") + std::string("its own JACK port");
   if (text.empty()) text = "no input";
+  if (status.clock_bpm > 0) {
+    text += "; clock " + decimal(status.clock_bpm) + " bpm, unsteady by " +
+            decimal(status.clock_jitter_ms) + " ms";
+  }
   if (!status.osc.empty()) {
     text += "; OSC at " + status.osc + ", " + std::to_string(status.osc_messages) + " messages";
   }
@@ -138,7 +142,7 @@ void add_footer(std::vector<PageLine>& lines, const SynthStatus& status) {
   for (std::size_t i = first; i < told.size(); ++i) lines.push_back({told[i], Style::warning});
   if (!status.has_keys) return;
   lines.push_back({"octave " + std::to_string(status.octave) +
-                       "   ? help   space silence   tab next patch   r record   q quit",
+                       "   ? help   space silence   tab next patch   r record   m learn   q quit",
                    Style::dim});
 }
 
@@ -147,6 +151,11 @@ std::vector<PageLine> top(const SynthStatus& status, int columns) {
                                  last(status),  load(status),  voices(status)};
   lines.push_back(level("left", status.live.peak_left, columns));
   lines.push_back(level("right", status.live.peak_right, columns));
+  if (!status.knobs_to_turn.empty()) {
+    std::string text;
+    for (const std::string& knob : status.knobs_to_turn) text += (text.empty() ? "" : ", ") + knob;
+    lines.push_back(labelled("knobs", text, Style::warning));
+  }
   if (!status.recording.empty()) {
     lines.push_back(
         labelled("REC", clock_text(status.recorded_s) + "  " + status.recording, Style::alarm));

@@ -77,7 +77,7 @@ Result<void> Player::make_engine() {
   }
   engine::LiveConfig config;
   config.engine = config_.engine;
-  config.engine.rate_hz = stream_->format().rate_hz;
+  config.engine.rate_hz = rate_hz_ = stream_->format().rate_hz;
   auto live = engine::LiveEngine::create(config, std::move(program), bank_.source);
   if (!live) return live.error();
   gate_.lead_to(nullptr);
@@ -90,32 +90,22 @@ Result<void> Player::make_engine() {
 
 void Player::process(const io::AudioBlock& block) KNOTWAVE_RT {
   const auto frames = static_cast<std::size_t>(block.frames);
+  const auto midi = entry_.translated(block.midi, block.time_ns, rate_hz_);
   const std::span<float> left(block.outputs[0], frames);
   if (block.outputs.size() > 1) {
-    live_->process(block.time_ns, block.midi, left, {block.outputs[1], frames});
+    live_->process(block.time_ns, midi, left, {block.outputs[1], frames});
     return;
   }
   const std::span<float> right = std::span(mono_).first(frames);
-  live_->process(block.time_ns, block.midi, left, right);
+  live_->process(block.time_ns, midi, left, right);
   for (std::size_t i = 0; i < frames; ++i) left[i] = 0.5f * (left[i] + right[i]);
 }
 
 void Player::message(const base::MidiEvent& event, std::int64_t time_ns) noexcept {
-  if ((left_to_stream_.load(std::memory_order_relaxed) >> event.port & 1) != 0) return;
-  port_notes_[event.port % port_notes_.size()].heard(event);
-  gate_.push(event.port, engine::live_message(event, time_ns));
+  entry_.heard(event, time_ns);
 }
 
-void Player::port_lost(int port) noexcept {
-  port_notes_[static_cast<std::size_t>(port) % port_notes_.size()].release(
-      [&](std::uint8_t status, std::uint8_t first, std::uint8_t second) {
-        engine::LiveMessage message;
-        message.bytes[0] = status;
-        message.bytes[1] = first;
-        message.bytes[2] = second;
-        gate_.push(port, message);
-      });
-}
+void Player::port_lost(int port) noexcept { entry_.lost(port); }
 
 void Player::tick(std::int64_t now_ns, std::vector<std::string>& told) {
   for (std::string& line : std::exchange(first_lines_, {})) told.push_back(std::move(line));
@@ -135,7 +125,7 @@ void Player::leave_to_stream(const std::vector<std::string>& sources) {
     const bool is_there = std::find(sources.begin(), sources.end(), port.name) != sources.end();
     if (port.api == "jack" && port.is_open && is_there) bits |= std::uint32_t{1} << port.port;
   }
-  left_to_stream_.store(bits, std::memory_order_relaxed);
+  entry_.leave_out(bits);
 }
 
 void Player::tell_midi(std::vector<std::string>& told) {
@@ -171,7 +161,7 @@ void Player::install(PlayableBank bank) {
 
 void Player::panic() {
   live_->panic();
-  for (PortNotes& notes : port_notes_) notes = {};
+  entry_.forget();
 }
 
 /// Without the device the engine goes on by the clock: notes are released, takes go on.
@@ -259,6 +249,9 @@ void Player::describe(SynthStatus& status) {
   status.lost_reason = is_lost_ ? lost_reason_ : "";
   status.live = live_->status();
   if (midi_) status.midi = midi_->ports();
+  status.clock_bpm = entry_.clock_bpm();
+  status.clock_jitter_ms = entry_.clock_jitter_ms();
+  status.knobs_to_turn = entry_.to_turn();
   const auto& patches = bank_.input.spec.patches;
   const auto patch = static_cast<std::size_t>(std::max(0, status.live.envelope_patch));
   if (patch >= patches.size()) return;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // An engine under a sound device and MIDI inputs, and what becomes of them when the device goes.
 #pragma once
-#include <array>
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -15,7 +13,7 @@
 #include "bank_loader.h"
 #include "engine_gate.h"
 #include "held_state.h"
-#include "port_notes.h"
+#include "midi_entry.h"
 #include "status.h"
 #include "stream_opener.h"
 
@@ -43,6 +41,7 @@ class Player final : private io::AudioClient, private io::MidiListener {
   const engine::BankSpec& bank() const { return bank_.input.spec; }
   void panic();
   EngineGate& gate() { return gate_; }
+  MidiEntry& entry() { return entry_; }
   engine::LiveEngine& live() { return *live_; }
   /// All that happened since engine time 0.
   const engine::Journal& journal();
@@ -83,6 +82,7 @@ class Player final : private io::AudioClient, private io::MidiListener {
   PlayerConfig config_;
   PlayableBank bank_;
   EngineGate gate_;
+  MidiEntry entry_{gate_};
   std::unique_ptr<engine::LiveEngine> live_;
   engine::Journal journal_;
   std::size_t records_held_ = 0;  ///< of the journal, which held_ knows
@@ -90,11 +90,9 @@ class Player final : private io::AudioClient, private io::MidiListener {
   std::unique_ptr<io::AudioStream> stream_;
   std::unique_ptr<io::AudioStream> ending_;  ///< of another rate, waits for end_engine()
   std::unique_ptr<io::MidiInputs> midi_;
-  std::array<PortNotes, io::kMaxMidiPorts> port_notes_;
-  /// Bit p: what MIDI port p sends comes in by the stream's own port as well, to the sample.
-  std::atomic<std::uint32_t> left_to_stream_{0};
   StreamOpener opener_;
   io::AudioFormat lost_format_;
+  double rate_hz_ = 48000;  ///< of the engine
   bool is_lost_ = false, wants_restart_ = false;
   std::string lost_reason_;
   std::int64_t next_try_ns_ = 0;

@@ -167,6 +167,8 @@ std::string json_line(const SynthStatus& status) {
       .number("peak_right_dbfs", dbfs(live.peak_right))
       .text("last_midi", midi_words(live.last_midi))
       .raw("midi", midi_json(status.midi))
+      .number("clock_bpm", status.clock_bpm)
+      .number("clock_jitter_ms", status.clock_jitter_ms)
       .text("osc", status.osc)
       .count("osc_messages", status.osc_messages)
       .count("osc_faults", status.osc_faults)

@@ -22,7 +22,9 @@ struct SynthStatus {
   std::string lost_reason;
   engine::LiveStatus live;
   std::vector<io::MidiPortStatus> midi;
-  std::string osc;  ///< where it listens; empty: it does not
+  double clock_bpm = 0, clock_jitter_ms = 0;  ///< of a MIDI clock; 0: none came
+  std::vector<std::string> knobs_to_turn;     ///< that were learnt, and are not picked up
+  std::string osc;                            ///< where it listens; empty: it does not
   std::int64_t osc_messages = 0, osc_faults = 0;
   std::string recording;  ///< the file; empty: nothing is recorded
   double recorded_s = 0;

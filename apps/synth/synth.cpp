@@ -66,7 +66,10 @@ Result<std::unique_ptr<Synth>> Synth::open(const SynthOptions& options, Playable
   synth->watch_ = std::move(watch);
   synth->osc_ = std::move(osc);
   synth->name_ = name;
+  synth->first_path_ = synth->watch_->path();
   synth->takes_ = resume.takes;
+  if (auto good = synth->open_learn(); !good) return good.error();
+  synth->follow_targets(0);
   synth->tell_all(warnings);
   synth->player_->play(resume.held);
   if (!options.record.empty()) {
@@ -125,12 +128,17 @@ void Synth::tick(std::int64_t now_ns) {
   follow_patch();
   follow_network();
   follow_take();
+  follow_learn();
   show(now_ns);
 }
 
 void Synth::follow_patch() {
   PatchWatch::News news = watch_->poll(io::steady_clock_ns());
-  if (news.bank) player_->install(*std::move(news.bank));
+  if (news.bank) {
+    player_->install(*std::move(news.bank));
+    if (watch_->path() != first_path_) name_.clear();
+    follow_targets(0);
+  }
   tell_all(news.lines);
 }
 
@@ -173,6 +181,9 @@ void Synth::act(const KeyAction& action, std::int64_t now_ns) {
     case Kind::next_patch:
       next_patch();
       break;
+    case Kind::learn:
+      learn_next();
+      break;
     case Kind::help:
       is_help_shown_ = !is_help_shown_;
       if (!screen_->is_on()) tell_all(keyboard_help());
@@ -187,7 +198,6 @@ void Synth::next_patch() {
   if (next_program()) return;
   const auto next = watch_->next_in_folder();
   if (!next) return tell("there is no other patch in the folder of " + watch_->path());
-  name_.clear();
   watch_->load(*next);
 }
 
@@ -203,6 +213,7 @@ bool Synth::next_program() {
   player_->play({channel_message(0xB0, 0, std::max(0, entry.bank_msb), 0),
                  channel_message(0xB0, 32, std::max(0, entry.bank_lsb), 0),
                  channel_message(0xC0, entry.program_low, 0, 0)});
+  follow_targets(static_cast<std::size_t>(player_->bank().entry_patch[program_entry_]));
   tell("channel 1 plays program " + std::to_string(entry.program_low) + ": " + entry.patch_file);
   return true;
 }

@@ -44,6 +44,10 @@ class Synth {
   void follow_patch();
   void follow_network();
   void follow_take();
+  Result<void> open_learn();
+  void learn_next();
+  void follow_learn();
+  void follow_targets(std::size_t patch);
   void read_keys(std::int64_t now_ns);
   void act(const KeyAction& action, std::int64_t now_ns);
   void next_patch();
@@ -61,7 +65,7 @@ class Synth {
   void write_line(const std::string& line);
 
   SynthOptions options_;
-  std::string name_;
+  std::string name_, first_path_;
   std::unique_ptr<Player> player_;
   std::unique_ptr<PatchWatch> watch_;
   std::unique_ptr<OscDoor> osc_;
@@ -74,6 +78,7 @@ class Synth {
   std::int64_t start_ns_, next_tick_ns_ = 0, next_page_ns_ = 0, next_line_ns_ = 0;
   std::string last_line_;
   std::size_t program_entry_ = 0;
+  std::size_t next_controller_ = 0;  ///< of the patch's, to be learnt
   int takes_ = 0;
   bool is_help_shown_ = false, is_quitting_ = false, has_failed_ = false, is_reader_gone_ = false;
 };

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "midi_entry.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace knotwave::synth {
+namespace {
+
+constexpr int kClockInput = 19;       ///< of the engine: tempo from the stream's own port
+constexpr double kClockRate = 48000;  ///< clocks are counted in these, whatever the device's rate
+
+/// Nanoseconds as samples of kClockRate with their fraction: 6 samples are 125 us.
+base::SampleTime clock_time(std::int64_t time_ns) {
+  const std::int64_t periods = time_ns / 125000, rest_ns = time_ns % 125000;
+  const auto scaled = static_cast<std::uint64_t>(rest_ns) * 6;
+  base::SampleTime time;
+  time.sample = periods * 6 + static_cast<std::int64_t>(scaled / 125000);
+  time.fraction = static_cast<std::uint32_t>((scaled % 125000 << 32) / 125000);
+  return time;
+}
+
+}  // namespace
+
+MidiEntry::MidiEntry(EngineGate& gate) : gate_(gate) {
+  lock_.clear();
+  exact_.reserve(2 * kMostExact);
+  for (engine::MidiClock& clock : clocks_) clock.reset(kClockRate);
+}
+
+engine::MidiLearn::Out MidiEntry::learned(const base::MidiEvent& event) noexcept {
+  if (has_learn_.load(std::memory_order_relaxed)) {
+    const Lock lock(lock_, kTries);
+    if (lock.is_held() && learn_) return learn_->translate(event);
+  }
+  engine::MidiLearn::Out out;
+  out.messages[0] = event;
+  out.count = 1;
+  return out;
+}
+
+/// Clocks are no music: a tempo that changed is handed on in their place.
+bool MidiEntry::is_clock(const base::MidiEvent& event, std::int64_t time_ns,
+                         std::size_t port) noexcept {
+  const std::uint8_t status = event.bytes[0];
+  const bool is_transport = status >= 0xFA && status <= 0xFC;
+  if (status != 0xF8 && status != 0xF2 && !is_transport) return false;
+  base::MidiEvent timed = event;
+  timed.time = clock_time(time_ns);
+  if (clocks_[port].handle(timed)) {
+    engine::LiveMessage tempo;
+    tempo.kind = engine::LiveMessage::Kind::tempo;
+    tempo.time_ns = time_ns;
+    tempo.number = clocks_[port].tempo_event().microseconds_per_quarter;
+    gate_.push(port == kStreamPort ? kClockInput : static_cast<int>(port), tempo);
+  }
+  const engine::MidiClockStatus now = clocks_[port].status();
+  bpm_.store(static_cast<float>(now.bpm), std::memory_order_relaxed);
+  jitter_ms_.store(static_cast<float>(now.jitter_ms), std::memory_order_relaxed);
+  return true;
+}
+
+void MidiEntry::heard(const base::MidiEvent& event, std::int64_t time_ns) noexcept {
+  const std::size_t port = event.port % notes_.size();
+  if ((left_out_.load(std::memory_order_relaxed) >> port & 1) != 0) return;
+  if (is_clock(event, time_ns, port)) return;
+  notes_[port].heard(event);
+  const auto out = learned(event);
+  for (int i = 0; i < out.count; ++i) {
+    gate_.push(static_cast<int>(port),
+               engine::live_message(out.messages[static_cast<std::size_t>(i)], time_ns));
+  }
+}
+
+void MidiEntry::lost(int port) noexcept {
+  const std::size_t index = static_cast<std::size_t>(port) % notes_.size();
+  notes_[index].release([&](std::uint8_t status, std::uint8_t first, std::uint8_t second) {
+    engine::LiveMessage message;
+    message.bytes[0] = status;
+    message.bytes[1] = first;
+    message.bytes[2] = second;
+    gate_.push(static_cast<int>(index), message);
+  });
+}
+
+std::span<const base::MidiEvent> MidiEntry::translated(std::span<const base::MidiEvent> exact,
+                                                       std::int64_t time_ns,
+                                                       double rate_hz) KNOTWAVE_RT {
+  exact_.clear();
+  for (const base::MidiEvent& event : exact.first(std::min(exact.size(), kMostExact))) {
+    const auto offset_ns =
+        static_cast<std::int64_t>(static_cast<double>(event.time.sample) * 1e9 / rate_hz);
+    if (is_clock(event, time_ns + offset_ns, kStreamPort)) continue;
+    const auto out = learned(event);
+    for (int i = 0; i < out.count; ++i) {
+      exact_.push_back(out.messages[static_cast<std::size_t>(i)]);
+      exact_.back().time = event.time;
+    }
+  }
+  return exact_;
+}
+
+void MidiEntry::forget() noexcept {
+  for (PortNotes& notes : notes_) notes = {};
+  const Lock lock(lock_, kEndless);
+  if (learn_) learn_->controllers_went_back();
+}
+
+void MidiEntry::use(engine::MidiLearn learn) {
+  const Lock lock(lock_, kEndless);
+  learn_ = std::move(learn);
+  has_learn_ = true;
+}
+
+bool MidiEntry::learn(int controller) {
+  const Lock lock(lock_, kEndless);
+  return learn_ && learn_->learn(controller);
+}
+
+void MidiEntry::cancel() {
+  const Lock lock(lock_, kEndless);
+  if (learn_) learn_->cancel();
+}
+
+bool MidiEntry::is_learning() {
+  const Lock lock(lock_, kEndless);
+  return learn_ && learn_->is_learning();
+}
+
+std::vector<std::string> MidiEntry::to_turn() {
+  using PickUp = engine::MidiLearn::PickUp;
+  std::vector<std::pair<int, PickUp>> knobs;
+  {
+    const Lock lock(lock_, kEndless);
+    for (int i = 0; learn_ && i < learn_->size(); ++i) {
+      const auto& knob = learn_->knob(i);
+      if (knob.pick_up == PickUp::unknown || knob.pick_up == PickUp::held) continue;
+      knobs.emplace_back(knob.learned.from, knob.pick_up);
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [controller, pick_up] : knobs) {
+    lines.push_back("controller " + std::to_string(controller) + ": turn it " +
+                    (pick_up == PickUp::too_low ? "up" : "down"));
+  }
+  return lines;
+}
+
+std::optional<engine::LearnSpec> MidiEntry::news() {
+  const Lock lock(lock_, kEndless);
+  if (!learn_ || !learn_->has_changed()) return std::nullopt;
+  return learn_->spec();
+}
+
+}  // namespace knotwave::synth

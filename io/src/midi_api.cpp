@@ -34,7 +34,7 @@ bool MidiApi::start(std::int64_t now_ns) {
   if (works_ || now_ns < next_try_ns_) return false;
   if (is_jack(name_)) {
     next_try_ns_ = now_ns + kRetryNs;
-    auto watch = JackWatch::open(client_name_);
+    auto watch = JackWatch::open(client_name_ + "-watch");
     if (watch) {
       watch_ = std::move(*watch);
     } else {

@@ -43,7 +43,7 @@ class OpenOutput : public MidiOutput {
     auto output = std::make_unique<OpenOutput>();
     output->api_ = api;
     if (is_jack(api)) {
-      auto watch = JackWatch::open(config.client_name);
+      auto watch = JackWatch::open(config.client_name + "-watch");
       if (!watch) return watch.error();
       output->watch_ = std::move(*watch);
     }

@@ -36,6 +36,11 @@ RtMidi::Api midi_api(std::string_view name) {
 
 bool is_jack(std::string_view api) { return api == "jack"; }
 
+std::string why_not(std::string_view api, const std::string& said) {
+  if (api == "alsa") return "there is no sequencer; as root, `modprobe snd-seq` makes one";
+  return said;
+}
+
 OwnOutput::OwnOutput(std::string api, std::string name)
     : api_(std::move(api)), name_(std::move(name)) {
   const std::lock_guard lock(own_outputs().mutex);

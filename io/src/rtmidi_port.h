@@ -19,6 +19,8 @@ namespace knotwave::io {
 std::vector<std::string> midi_apis();
 RtMidi::Api midi_api(std::string_view name);
 bool is_jack(std::string_view api);
+/// What RtMidi says of an API that does not work, in words a player can act on.
+std::string why_not(std::string_view api, const std::string& said);
 
 /// An RtMidiIn or RtMidiOut whose complaints are kept instead of thrown or printed. `client_name`
 /// is what others see.
@@ -32,7 +34,7 @@ class RtMidiPort {
     try {
       return std::unique_ptr<RtMidiPort>(new RtMidiPort(midi_api(api), client_name));
     } catch (const RtMidiError& error) {
-      return fail(ErrorCode::unsupported, error.getMessage());
+      return fail(ErrorCode::unsupported, why_not(api, error.getMessage()));
     } catch (const std::exception& error) {
       return fail(ErrorCode::unsupported, error.what());
     }

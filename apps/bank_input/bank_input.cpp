@@ -67,11 +67,8 @@ Result<std::vector<engine::WaveCycles>> read_waves(const engine::BankSpec& spec,
   return waves;
 }
 
-}  // namespace
-
-Result<BankInput> read(const std::string& path) {
+Result<BankInput> compiled(Result<engine::BankSpec> spec) {
   BankInput input;
-  auto spec = engine::read_bank(path);
   if (!spec) return std::move(spec).error();
   for (const engine::PatchSpec& patch : spec->patches) {
     for (auto& warning : patch_warnings(patch)) input.warnings.push_back(std::move(warning));
@@ -85,6 +82,14 @@ Result<BankInput> read(const std::string& path) {
   input.waves = *std::move(waves);
   input.program = *std::move(program);
   return input;
+}
+
+}  // namespace
+
+Result<BankInput> read(const std::string& path) { return compiled(engine::read_bank(path)); }
+
+Result<BankInput> read(const std::string& path, std::span<const engine::FileText> texts) {
+  return compiled(engine::read_bank(path, texts));
 }
 
 }  // namespace knotwave::bank_input

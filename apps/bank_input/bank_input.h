@@ -2,6 +2,7 @@
 // A patch or bank with every file it names, read and compiled: what is played and what is checked.
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,8 @@ struct BankInput {
 /// Errors: those of read_bank(), of the sound files (at their place in the patch), of
 /// BankProgram::create().
 Result<BankInput> read(const std::string& path);
+/// The same from texts that were kept (engine::BankSpec::texts) in place of the disk; sounds are
+/// read from the disk.
+Result<BankInput> read(const std::string& path, std::span<const engine::FileText> texts);
 
 }  // namespace knotwave::bank_input

@@ -23,6 +23,7 @@
 #include "output_places.h"
 #include "progress.h"
 #include "render_job.h"
+#include "render_journal.h"
 
 namespace {
 
@@ -103,10 +104,22 @@ int check(const RenderOptions& options, const RenderInput& input) {
   return print(check_line(options, input) + "\n");
 }
 
+int run_journal(const RenderOptions& options) {
+  const std::string overlap = output_overlap(options, {});
+  if (!overlap.empty()) return say_usage("knotwave-render", overlap);
+  auto json_file = open_json(options);
+  if (!json_file) return say(json_file.error());
+  const auto report = render_journal(options);
+  if (!report) return say(report.error());
+  if (!options.quiet) say_warnings(report->warnings);
+  return say_report(options, *report, *json_file);
+}
+
 int run(const RenderOptions& options) {
   if (const auto set = curves::set_simd_level(options.simd); !set) {
     return say(fail(set.error().code, "--simd: " + set.error().message));
   }
+  if (!options.journal.empty()) return run_journal(options);
   const auto input = read_input(options);
   if (!input) return say(input.error());
   const std::string overlap = output_overlap(options, *input);

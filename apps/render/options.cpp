@@ -68,6 +68,10 @@ void add_input_and_output(CLI::App& app, RenderOptions& o) {
             "FILE|-"},
            o.output);
   add_text(app, {"--demo", "play a built-in demo instead: " + demo_names(), "NAME"}, o.demo);
+  add_text(app,
+           {"--journal", "play a recorded take again, with its own rate and seed: the same samples",
+            "FILE"},
+           o.journal);
   add_flag(app, {"--check", "read everything, render nothing; no output with it", ""}, o.check);
   add_text(app,
            {"--stems", "also write one file for each MIDI channel used, into this folder", "DIR"},
@@ -117,6 +121,17 @@ bool is_midi_name(std::string_view name) {
          base::has_ending(name, ".rmi");
 }
 
+/// What is wrong beside --journal, which says all by itself; empty when nothing is.
+std::string journal_conflict(const CLI::App& app, const RenderOptions& o) {
+  if (!o.patch.empty()) return "--journal has its own patches; leave out '" + o.patch + "'";
+  for (const char* option : {"--demo", "--check", "--stems", "--rate", "--seed", "--tail"}) {
+    if (app.count(option) > 0) {
+      return std::string("--journal plays the take as it was; leave out ") + option;
+    }
+  }
+  return {};
+}
+
 /// What is wrong with PATCH and SCORE; empty when nothing is.
 std::string input_conflict(const RenderOptions& o) {
   if (!o.demo.empty()) {
@@ -125,7 +140,7 @@ std::string input_conflict(const RenderOptions& o) {
     }
     return demo::is_demo(o.demo) ? "" : demo::unknown_demo(o.demo).message;
   }
-  if (o.patch.empty()) return "a PATCH and a SCORE are needed, or --demo NAME";
+  if (o.patch.empty()) return "a PATCH and a SCORE are needed, or --demo NAME, or --journal FILE";
   if (is_midi_name(o.patch)) {
     return "the patch comes before the score, but '" + o.patch + "' is named as a MIDI file";
   }
@@ -175,8 +190,9 @@ CommandLine read_command_line(int argc, char** argv) {
   add_input_and_output(app, options);
   add_sound(app, options);
   add_speed(app, options);
-  line.exit_code = command_line::read_words(app, argc, argv, [&options] {
-    std::string fault = input_conflict(options);
+  line.exit_code = command_line::read_words(app, argc, argv, [&app, &options] {
+    std::string fault =
+        options.journal.empty() ? input_conflict(options) : journal_conflict(app, options);
     return fault.empty() ? output_conflict(options) : fault;
   });
   return line;

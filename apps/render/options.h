@@ -14,7 +14,8 @@ struct RenderOptions {
   std::string patch;  ///< a patch or a bank; empty with a demo
   std::string score;  ///< a MIDI file; empty with a demo
   std::string demo;
-  std::string output;  ///< "-" is standard output
+  std::string journal;  ///< of a take, in place of patch and score
+  std::string output;   ///< "-" is standard output
   bool check = false;
   double max_length_s = 3600;
   int rate_hz = 48000;

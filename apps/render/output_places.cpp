@@ -32,7 +32,9 @@ std::string output_overlap(const RenderOptions& options, const RenderInput& inpu
       if ((channels >> channel & 1) != 0) add("--stems", stem_path(options, channel));
     }
   }
-  return command_line::overlap(input.files, outputs);
+  std::vector<command_line::NamedFile> inputs = input.files;
+  if (!options.journal.empty()) inputs.push_back({"the journal", options.journal});
+  return command_line::overlap(inputs, outputs);
 }
 
 }  // namespace knotwave::render

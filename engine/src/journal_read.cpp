@@ -342,8 +342,7 @@ Result<Journal> read_journal(std::string_view text, const std::string& source_na
   return Reader(text, source_name).read();
 }
 
-std::vector<Event> journal_events(const Journal& journal,
-                                  std::span<const BankProgram* const> banks) {
+std::vector<Event> journal_events(const Journal& journal) {
   std::vector<Event> events;
   events.reserve(journal.records.size());
   for (const JournalRecord& record : journal.records) {
@@ -357,8 +356,6 @@ std::vector<Event> journal_events(const Journal& journal,
     }
     if (record.kind == Event::Kind::tempo) {
       event.microseconds_per_quarter = static_cast<std::uint32_t>(record.number);
-    } else if (record.kind == Event::Kind::install_bank) {
-      event.bank = record.index < banks.size() ? banks[record.index] : nullptr;
     } else if (record.kind == Event::Kind::set_target) {
       event.slot = static_cast<std::uint16_t>(record.index);
       event.number = record.number;

@@ -221,6 +221,14 @@ void Performance::install(const BankProgram* bank, base::SampleTime time) KNOTWA
   for (int i = 0; i < count; ++i) {
     if (slots_.at(i).is_sounding() && slots_.at(i).bank != bank) carry_over(i, bank, time);
   }
+  // No patch of the old bank may be remembered: a later one may come to lie at the same address.
+  for (int channel = 0; channel < kChannels; ++channel) {
+    Mono& mono = monos_[static_cast<std::size_t>(channel)];
+    if (mono.patch == nullptr || mono_sounds(mono, channel)) continue;
+    mono.stack.clear();
+    mono.slot = -1;
+    mono.patch = nullptr;
+  }
 }
 
 // The new voice is the same note, begun when the old one began, so that its envelopes stand where

@@ -105,7 +105,7 @@ TEST(RenderCommandLine, WordsThatDoNotGoTogetherAreTold) {
   expect_usage_errors(
       "knotwave-render",
       {
-          {{}, "a PATCH and a SCORE are needed, or --demo NAME"},
+          {{}, "a PATCH and a SCORE are needed, or --demo NAME, or --journal FILE"},
           {{"a.toml", "-o", "a.wav"}, "after the patch 'a.toml' a SCORE is needed (.mid, .rmi)"},
           {{"a.mid", "a.toml", "-o", "a.wav"},
            "the patch comes before the score, but 'a.mid' is named as a MIDI file"},

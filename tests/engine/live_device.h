@@ -67,13 +67,23 @@ class Device {
   Sound sound_;
 };
 
-inline Sound played_again(const Journal& journal, std::span<const BankProgram* const> banks,
-                          std::size_t frames, std::size_t block = 333) {
+/// `bank_of_index` compiles the one of Journal::banks with that index.
+template <class BankOfIndex>
+Sound played_again(const Journal& journal, BankOfIndex&& bank_of_index, std::size_t frames,
+                   std::size_t block = 333) {
+  std::vector<std::unique_ptr<const BankProgram>> banks;
+  banks.push_back(bank_of_index(0));
+  std::vector<Event> events = journal_events(journal);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (events[i].kind != Event::Kind::install_bank) continue;
+    banks.push_back(bank_of_index(journal.records[i].index));
+    events[i].bank = banks.back().get();
+  }
   const auto engine = engine_for(*banks[0], {.rate_hz = journal.rate_hz,
                                              .max_voices = journal.max_voices,
                                              .seed = journal.seed,
                                              .volume_db = journal.volume_db});
-  const Sound sound = play(*engine, journal_events(journal, banks), frames, block);
+  const Sound sound = play(*engine, events, frames, block);
   EXPECT_EQ(engine->counters().events_late, 0);
   return sound;
 }

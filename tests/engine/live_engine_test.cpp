@@ -230,8 +230,8 @@ TEST(LiveEngine, FadesAfterTheTapAndTheJournal) {
   EXPECT_EQ(tap.first, 0);
   ASSERT_EQ(tap.frames, 31u * 512u);
   const Journal journal = journal_of(*live);
-  const auto bank = bank_from(kPlain);
-  const Sound again = played_again(journal, std::array{bank.get()}, tap.frames);
+  const Sound again = played_again(
+      journal, [](std::uint32_t) { return bank_from(kPlain); }, tap.frames);
   for (std::size_t i = 0; i < tap.frames; ++i) {
     ASSERT_EQ(taken[2 * i], again.left[i]) << i;
     ASSERT_EQ(taken[2 * i + 1], again.right[i]) << i;

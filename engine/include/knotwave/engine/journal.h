@@ -32,6 +32,7 @@ struct JournalBank {
     std::string path;
     std::string sha256;  ///< of the file
   };
+  using File = FileText;
   std::string path;             ///< of the bank or patch, one of the files
   std::vector<FileText> files;  ///< as BankSpec::texts
   std::vector<Sound> sounds;
@@ -56,9 +57,9 @@ std::string write_journal(const Journal& journal);
 /// Memory is bounded by a few times the text. [control]
 Result<Journal> read_journal(std::string_view text, const std::string& source_name);
 
-/// The records as the engine's events. `banks` are those of Journal::banks, compiled; the journal
-/// must outlive the events. [control]
-std::vector<Event> journal_events(const Journal& journal,
-                                  std::span<const BankProgram* const> banks);
+/// The records as the engine's events, which point into the journal. The bank of each install_bank
+/// is for the caller to set: a program compiled anew each time, as it was when it was played, for
+/// an engine does nothing when it is given the bank it has. [control]
+std::vector<Event> journal_events(const Journal& journal);
 
 }  // namespace knotwave::engine

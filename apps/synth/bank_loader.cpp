@@ -2,19 +2,15 @@
 #include "bank_loader.h"
 
 #include <ctime>
-#include <span>
 #include <utility>
 
 #include <sys/stat.h>
 
-#include "knotwave/base/document.h"
-#include "knotwave/base/file.h"
-#include "knotwave/base/sha256.h"
+#include "take/take.h"
 
 namespace knotwave::synth {
 namespace {
 
-constexpr std::size_t kMaxSoundBytes = std::size_t{1} << 31;
 constexpr int kTries = 5;
 
 /// By the clock that files are stamped with.
@@ -35,27 +31,6 @@ bool is_saved_since(const PlayableBank& bank, timespec start) {
   return false;
 }
 
-/// Texts as they are, sounds by their SHA-256.
-Result<engine::JournalBank> source_of(const PlayableBank& bank) {
-  engine::JournalBank source;
-  source.path = bank.path;
-  std::vector<std::string> texts = bank.input.spec.files;
-  texts.insert(texts.begin(), bank.path);
-  for (const std::string& path : texts) {
-    auto text = base::read_file(path, base::kMaxDocumentBytes);
-    if (!text) return text.error();
-    source.files.push_back({path, *std::move(text)});
-  }
-  for (const std::string& path : bank.input.sounds) {
-    const auto bytes = base::read_file(path, kMaxSoundBytes);
-    if (!bytes) return bytes.error();
-    base::Sha256 hash;
-    hash.update(std::as_bytes(std::span(*bytes)));
-    source.files.push_back({path, hash.finish_hex()});
-  }
-  return source;
-}
-
 }  // namespace
 
 std::vector<std::string> files_of(const PlayableBank& bank) {
@@ -73,7 +48,7 @@ Result<PlayableBank> read_playable(const std::string& path) {
     auto input = bank_input::read(path);
     if (!input) return std::move(input).error();
     bank.input = *std::move(input);
-    auto source = source_of(bank);
+    auto source = take::journal_bank(bank.input);
     if (!source) return std::move(source).error();
     bank.source = *std::move(source);
     // What was compiled and what was read for the journal must be the same text.

@@ -13,6 +13,7 @@
 #include "knotwave/base/file.h"
 #include "knotwave/base/sha256.h"
 #include "knotwave/engine/live_engine.h"
+#include "knotwave/io/sound_file.h"
 
 #include "support/program.h"
 #include "take/take_midi.h"

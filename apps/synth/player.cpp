@@ -54,16 +54,40 @@ Player::~Player() {
 }
 
 Result<void> Player::open_stream(const PlayerConfig& config) {
-  auto stream = io::AudioStream::open(config.audio, *this);
-  if (!stream && stream.error().code == ErrorCode::unsupported && config.plays_without_device &&
-      !is_device_chosen(config.audio)) {
-    first_lines_.push_back(stream.error().message + "; playing without a device");
-    io::AudioConfig none = config.audio;
-    none.api = "none";
-    stream = io::AudioStream::open(none, *this);
+  const bool is_resumed = !config.lost_api.empty();
+  io::AudioConfig wanted = config.audio;
+  if (is_resumed) wanted.api = config.lost_api;
+  auto stream = io::AudioStream::open(wanted, *this);
+  if (stream) {
+    stream_ = *std::move(stream);
+    return {};
   }
-  if (!stream) return stream.error();
-  stream_ = *std::move(stream);
+  if (is_resumed) {
+    is_lost_ = true;
+    lost_reason_ = stream.error().message;
+    lost_format_.api = config.lost_api;
+    lost_format_.rate_hz = config.lost_rate_hz;
+    return open_substitute();
+  }
+  const bool may_do_without = config.plays_without_device && !is_device_chosen(config.audio);
+  if (!may_do_without || stream.error().code != ErrorCode::unsupported) return stream.error();
+  first_lines_.push_back(stream.error().message + "; playing without a device");
+  lost_format_.rate_hz = config.audio.rate_hz;
+  return open_substitute();
+}
+
+/// Blocks by the clock, at the rate of lost_format_.
+Result<void> Player::open_substitute() {
+  io::AudioConfig none = config_.audio;
+  none.api = "none";
+  none.device.clear();
+  none.rate_hz = lost_format_.rate_hz;
+  if (lost_format_.block_frames != 0) {
+    none.block_frames = std::clamp(lost_format_.block_frames, 16, io::kMaxAudioBlock);
+  }
+  auto substitute = io::AudioStream::open(none, *this);
+  if (!substitute) return substitute.error();
+  stream_ = *std::move(substitute);
   return {};
 }
 
@@ -115,7 +139,8 @@ void Player::tick(std::int64_t now_ns, std::vector<std::string>& told) {
   const io::AudioStatus status = stream_->status();
   if (!is_lost_ && status.state == io::AudioStatus::State::lost) lose(status.reason, told);
   leave_to_stream(status.midi_sources);
-  if (is_lost_) look_for_device(now_ns, told);
+  wants_restart_ = wants_restart_ || (is_lost_ && io::AudioStream::is_poisoned());
+  if (is_lost_ && !wants_restart_) look_for_device(now_ns, told);
 }
 
 /// Ports of JACK that are connected to the stream's own port are heard once: there.
@@ -172,16 +197,9 @@ void Player::lose(const std::string& reason, std::vector<std::string>& told) {
   told.push_back("the sound device is lost: " + reason +
                  "; patch and notes are kept until it comes back");
   stream_.reset();
-  wants_restart_ = io::AudioStream::is_poisoned();
-  io::AudioConfig none = config_.audio;
-  none.api = "none";
-  none.device.clear();
-  none.rate_hz = lost_format_.rate_hz;
-  none.block_frames = std::clamp(lost_format_.block_frames, 16, io::kMaxAudioBlock);
-  auto substitute = io::AudioStream::open(none, *this);
-  if (!substitute) return told.push_back(substitute.error().message);
-  stream_ = *std::move(substitute);
-  if (auto good = stream_->start(); !good) told.push_back(good.error().message);
+  auto good = open_substitute();
+  if (good) good = stream_->start();
+  if (!good) told.push_back(good.error().message);
 }
 
 void Player::look_for_device(std::int64_t now_ns, std::vector<std::string>& told) {
@@ -198,7 +216,7 @@ void Player::look_for_device(std::int64_t now_ns, std::vector<std::string>& told
 }
 
 void Player::take_device(std::unique_ptr<io::AudioStream> stream, std::vector<std::string>& told) {
-  if (stream->format().rate_hz != lost_format_.rate_hz) {
+  if (stream->format().rate_hz != rate_hz_) {
     ending_ = std::move(stream);
     return;
   }
@@ -243,7 +261,7 @@ void Player::fade_out() {
 }
 
 void Player::describe(SynthStatus& status) {
-  status.format = is_lost_ ? lost_format_ : stream_->format();
+  status.format = format();
   status.stream = stream_->status();
   status.is_lost = is_lost_;
   status.lost_reason = is_lost_ ? lost_reason_ : "";

@@ -24,6 +24,9 @@ struct PlayerConfig {
   io::MidiInputConfig midi;
   engine::EngineConfig engine;        ///< the rate comes from the device
   bool plays_without_device = false;  ///< where none is chosen and none is there
+  /// Not empty: a device of this API was lost, and is looked for where it is not there.
+  std::string lost_api;
+  double lost_rate_hz = 0;
 };
 
 /// [control] unless said otherwise; one thread.
@@ -50,6 +53,9 @@ class Player final : private io::AudioClient, private io::MidiListener {
   void describe(SynthStatus& status);
   double rate_hz() const { return stream_->format().rate_hz; }
 
+  /// Of the device that plays, or that was lost.
+  const io::AudioFormat& format() const { return is_lost_ ? lost_format_ : stream_->format(); }
+
   /// The device's library hangs: only a program started anew can use it. What is held is then
   /// played into that one.
   bool wants_restart() const { return wants_restart_; }
@@ -72,6 +78,7 @@ class Player final : private io::AudioClient, private io::MidiListener {
 
   Result<void> open_stream(const PlayerConfig& config);
   Result<void> make_engine();
+  Result<void> open_substitute();
   void lose(const std::string& reason, std::vector<std::string>& told);
   void look_for_device(std::int64_t now_ns, std::vector<std::string>& told);
   void take_device(std::unique_ptr<io::AudioStream> stream, std::vector<std::string>& told);

@@ -16,6 +16,8 @@ namespace {
 
 constexpr const char* kPatch = "KNOTWAVE_SYNTH_RESUME_PATCH";
 constexpr const char* kTakes = "KNOTWAVE_SYNTH_RESUME_TAKES";
+constexpr const char* kApi = "KNOTWAVE_SYNTH_RESUME_API";
+constexpr const char* kRate = "KNOTWAVE_SYNTH_RESUME_RATE";
 constexpr const char* kHeld = "KNOTWAVE_SYNTH_RESUME_HELD";
 constexpr std::size_t kMostBytes = 100'000;  ///< Linux takes 128 KiB a variable
 
@@ -32,6 +34,8 @@ Resume take_resume() {
   Resume resume;
   resume.patch = taken(kPatch);
   resume.takes = std::atoi(taken(kTakes).c_str());
+  resume.api = taken(kApi);
+  resume.rate_hz = std::atof(taken(kRate).c_str());
   resume.held = messages_in(taken(kHeld));
   return resume;
 }
@@ -40,6 +44,8 @@ Error restart_program(const Resume& resume, char** argv) {
   const std::string held = text_of(resume.held);
   ::setenv(kPatch, resume.patch.c_str(), 1);
   ::setenv(kTakes, std::to_string(resume.takes).c_str(), 1);
+  ::setenv(kApi, resume.api.c_str(), 1);
+  ::setenv(kRate, std::to_string(resume.rate_hz).c_str(), 1);
   ::setenv(kHeld, held.size() < kMostBytes ? held.c_str() : "", 1);
   // Sockets and pipes of the libraries below would stay open for good.
   const long most = ::sysconf(_SC_OPEN_MAX);

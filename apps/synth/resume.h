@@ -11,12 +11,14 @@
 namespace knotwave::synth {
 
 struct Resume {
-  std::string patch;  ///< empty: as the command line says
-  int takes = 0;      ///< that were begun
+  std::string patch;   ///< empty: as the command line says
+  int takes = 0;       ///< that were begun
+  std::string api;     ///< of the device that was lost; empty: a first start
+  double rate_hz = 0;  ///< of the engine
   std::vector<engine::LiveMessage> held;
 };
 
-/// From the environment, where it is left by restart_program(); empty in a first start.
+/// From the environment, where restart_program() leaves it.
 Resume take_resume();
 
 /// Becomes this program again, with the same words. Returns only where that failed; the error then

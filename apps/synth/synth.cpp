@@ -53,7 +53,10 @@ Result<std::unique_ptr<Synth>> Synth::open(const SynthOptions& options, Playable
                                            const std::string& name, const Resume& resume) {
   auto watch = std::make_unique<PatchWatch>(bank);
   const std::vector<std::string> warnings = bank.input.warnings;
-  auto player = Player::open(player_config(options), std::move(bank));
+  PlayerConfig config = player_config(options);
+  config.lost_api = resume.api;
+  config.lost_rate_hz = resume.rate_hz;
+  auto player = Player::open(config, std::move(bank));
   if (!player) return player.error();
   std::unique_ptr<OscDoor> osc;
   if (options.osc) {
@@ -85,7 +88,8 @@ Synth::~Synth() {
 }
 
 Resume Synth::resume() const {
-  return {name_.empty() ? watch_->path() : "", takes_, player_->held()};
+  return {name_.empty() ? watch_->path() : "", takes_, player_->format().api, player_->rate_hz(),
+          player_->held()};
 }
 
 Synth::End Synth::run(const std::atomic<int>& signals) {
@@ -98,7 +102,7 @@ Synth::End Synth::run(const std::atomic<int>& signals) {
     if (signals > 0 || is_quitting_ || is_over || player_->wants_restart()) break;
     wait(now_ns);
   }
-  player_->fade_out();
+  if (!player_->wants_restart()) player_->fade_out();
   end_take();
   if (player_->wants_restart()) return End::restart;
   return signals > 0 ? End::signal : End::asked;

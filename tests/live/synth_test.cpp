@@ -162,6 +162,30 @@ TEST_F(SynthUnderJack, AKilledServerIsToldAndAfterItsReturnTheHeldNoteSoundsWith
   EXPECT_EQ(synth.exit_code(), 0) << synth.err();
 }
 
+TEST_F(SynthUnderJack, WherePortAudioHangsTheProgramStartsItselfAnewWithWhatWasHeld) {
+  SynthProcess synth(
+      {"small.toml", "--json-status", "--audio-api", "portaudio-jack", "--osc", "47392"}, here());
+  ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
+  write("other.toml", render::kSmallPatch);
+  lo_address to = lo_address_new("127.0.0.1", "47392");
+  lo_send(to, "/patch", "s", "other.toml");
+  ASSERT_TRUE(synth.says("now playing other.toml"));
+  lo_send(to, "/note", "ii", 69, 127);
+  seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 20);
+  lo_address_free(to);
+  server_.kill();
+  ASSERT_TRUE(synth.says("the sound device is lost")) << synth.err();
+  seconds_until([&] { return synth.number("seconds") < 0.5; }, 10);  // another process by now
+  ASSERT_TRUE(server_.restart()) << server_.log();
+  EXPECT_LT(seconds_until([&] { return synth.says("the sound device is back", 0); }, 20), 3.0)
+      << synth.err();
+  seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 5);
+  EXPECT_GT(synth.number("peak_left_dbfs"), -30) << "the held note";
+  EXPECT_EQ(synth.field("patch"), "other.toml");
+  synth.signal(SIGTERM);
+  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+}
+
 TEST_F(SynthUnderJack, CtrlCFadesOut) {
   SynthProcess synth({"small.toml", "--json-status"}, here());
   ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();

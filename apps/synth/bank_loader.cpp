@@ -1,37 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "bank_loader.h"
 
-#include <ctime>
 #include <utility>
-
-#include <sys/stat.h>
 
 #include "take/take.h"
 
 namespace knotwave::synth {
-namespace {
-
-constexpr int kTries = 5;
-
-/// By the clock that files are stamped with.
-timespec file_time() {
-  timespec now{};
-  ::clock_gettime(CLOCK_REALTIME_COARSE, &now);
-  return now;
-}
-
-bool is_saved_since(const PlayableBank& bank, timespec start) {
-  for (const std::string& path : files_of(bank)) {
-    struct stat info {};
-    if (::stat(path.c_str(), &info) != 0) return true;
-    const timespec& saved = info.st_mtim;
-    if (saved.tv_sec > start.tv_sec) return true;
-    if (saved.tv_sec == start.tv_sec && saved.tv_nsec >= start.tv_nsec) return true;
-  }
-  return false;
-}
-
-}  // namespace
 
 std::vector<std::string> files_of(const PlayableBank& bank) {
   std::vector<std::string> files = bank.input.spec.files;
@@ -43,17 +17,12 @@ std::vector<std::string> files_of(const PlayableBank& bank) {
 Result<PlayableBank> read_playable(const std::string& path) {
   PlayableBank bank;
   bank.path = path;
-  for (int i = 0; i < kTries; ++i) {
-    const timespec start = file_time();
-    auto input = bank_input::read(path);
-    if (!input) return std::move(input).error();
-    bank.input = *std::move(input);
-    auto source = take::journal_bank(bank.input);
-    if (!source) return std::move(source).error();
-    bank.source = *std::move(source);
-    // What was compiled and what was read for the journal must be the same text.
-    if (!is_saved_since(bank, start)) break;
-  }
+  auto input = bank_input::read(path);
+  if (!input) return std::move(input).error();
+  bank.input = *std::move(input);
+  auto source = take::journal_bank(bank.input);
+  if (!source) return std::move(source).error();
+  bank.source = *std::move(source);
   return bank;
 }
 

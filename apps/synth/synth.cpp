@@ -8,7 +8,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include "knotwave/io/midi_file.h"
+#include "take_files.h"
 
 namespace knotwave::synth {
 namespace {
@@ -243,6 +243,13 @@ void Synth::end_take() {
   if (!take) {
     has_failed_ = true;
     return tell("the take is lost: " + take.error().to_string());
+  }
+  const engine::Journal& journal = player_->journal();
+  const std::vector<std::string> faults = write_beside(*take, journal);
+  has_failed_ = has_failed_ || !faults.empty();
+  tell_all(faults);
+  if (player_->live().status().journal_dropped > 0) {
+    tell("so much was played at once that the journal has gaps: the take cannot be rendered again");
   }
   tell(take->path + ": " + clock_text(static_cast<double>(take->frames) / player_->rate_hz()) +
        (take->sha256.empty() ? ", with gaps" : ", sha256 " + take->sha256));

@@ -13,6 +13,7 @@
 #include <termios.h>
 
 #include "knotwave/io/audio_device.h"
+#include "knotwave/io/midi_file.h"
 #include "knotwave/io/sound_file.h"
 
 #include "apps/render_scene.h"
@@ -49,8 +50,22 @@ class SynthProgram : public render::RenderScene {
   }
 };
 
+/// That the take renders again to the samples that were heard.
+class SynthTake : public SynthProgram {
+ protected:
+  void expect_rendered_again(const std::string& take, const std::string& told) {
+    support::ProgramOptions options;
+    options.folder = folder_.path();
+    const auto done = support::run_program(
+        {"knotwave-render", "--journal", take + ".journal", "-o", "again.wav"}, options);
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    ASSERT_EQ(render::hash_in(told).size(), 64u) << told;
+    EXPECT_EQ(render::hash_in(done.out), render::hash_in(told)) << done.out << told;
+  }
+};
+
 /// The same under a server.
-class SynthUnderJack : public SynthProgram {
+class SynthUnderJack : public SynthTake {
  protected:
   void SetUp() override { ASSERT_TRUE(server_.runs()) << server_.log(); }
 
@@ -110,10 +125,14 @@ TEST_F(SynthUnderJack, AScoreIsHeardSampleForSampleAndItsTakeRendersAgainToTheSa
       ASSERT_EQ(heard[c][in_capture + i], recorded[in_take + i]) << c << " " << i;
     }
   }
+  expect_rendered_again("take", synth.err());
+  const auto song = io::read_midi_file(file("take.mid"));
+  ASSERT_TRUE(song.has_value()) << song.error().to_string();
+  EXPECT_EQ(song->events.size(), score.size());
 }
 
 TEST_F(SynthUnderJack, ASavedPatchIsHeardAndABrokenOneToldWhileTheOldOnePlaysOn) {
-  SynthProcess synth({"small.toml", "--json-status"}, here());
+  SynthProcess synth({"small.toml", "--json-status", "--record", "take.wav"}, here());
   ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
   JackMidiSender sender(kMidiIn, held_note());
   ASSERT_TRUE(sender.is_connected());
@@ -135,6 +154,10 @@ TEST_F(SynthUnderJack, ASavedPatchIsHeardAndABrokenOneToldWhileTheOldOnePlaysOn)
   ASSERT_TRUE(synth.says("now playing small.toml")) << synth.err();
   seconds_until([&] { return synth.number("peak_left_dbfs") < loud_dbfs - 19; }, 20);
   EXPECT_NEAR(synth.number("peak_left_dbfs"), loud_dbfs - 20, 0.2) << "of the same held note";
+  synth.signal(SIGINT);
+  EXPECT_EQ(synth.exit_code(), 130);
+  write("small.toml", "the journal knows what was in it");
+  expect_rendered_again("take", synth.err());
 }
 
 TEST_F(SynthUnderJack, AKilledServerIsToldAndAfterItsReturnTheHeldNoteSoundsWithinThreeSeconds) {

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// What lies beside the sound of a take.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "knotwave/engine/journal.h"
+
+#include "recorder.h"
+
+namespace knotwave::synth {
+
+/// Writes FILE.journal and FILE.mid beside FILE.wav. `journal` is everything since engine time 0.
+/// Returns what went wrong, one line each.
+std::vector<std::string> write_beside(const Recorder::Take& take, engine::Journal journal);
+
+}  // namespace knotwave::synth

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxChannels = 64;
 constexpr int kMaxDeviceChannel = 256;
-constexpr double kMaxLatency_s = 10;
+constexpr double kMaxLatencySeconds = 10;
 
 Error out_of_range(const std::string& what) { return fail(ErrorCode::value_out_of_range, what); }
 
@@ -47,7 +47,7 @@ Result<void> check(const AudioConfig& config) {
     return out_of_range("a block of " + std::to_string(config.block_frames) +
                         " frames is not within 16 to " + std::to_string(kMaxAudioBlock));
   }
-  if (!(config.latency_s >= 0 && config.latency_s <= kMaxLatency_s)) {
+  if (!(config.latency_s >= 0 && config.latency_s <= kMaxLatencySeconds)) {
     return out_of_range("a latency of " + base::number_text(config.latency_s) +
                         " s is not within 0 to 10");
   }

@@ -9,7 +9,7 @@ namespace knotwave::io {
 /// [control]
 class BlockWatch {
  public:
-  static constexpr std::int64_t kLimit_ns = 800'000'000;
+  static constexpr std::int64_t kLimitNs = 800'000'000;
 
   void restart(std::int64_t now_ns) noexcept { moved_ns_ = now_ns; }
   /// `blocks` so far, each of which lasts `length_ns`. True when none has come for 0.8 s, or for
@@ -19,7 +19,7 @@ class BlockWatch {
       blocks_ = blocks;
       moved_ns_ = now_ns;
     }
-    return now_ns - moved_ns_ >= std::max(kLimit_ns, 4 * length_ns);
+    return now_ns - moved_ns_ >= std::max(kLimitNs, 4 * length_ns);
   }
 
  private:

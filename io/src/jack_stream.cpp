@@ -21,12 +21,13 @@ class JackStream final : public AudioStream {
  public:
   JackStream(std::shared_ptr<JackGraph> graph, AudioFormat format,
              std::vector<std::string> playback)
-      : graph_(std::move(graph)), format_(std::move(format)), playback_(std::move(playback)) {}
+      : graph_(std::make_unique<std::shared_ptr<JackGraph>>(std::move(graph))),
+        format_(std::move(format)),
+        playback_(std::move(playback)) {}
   // The graph goes with the call that closes it, however late, and stays where that is refused.
   ~JackStream() override {
-    graph_->pump().close();
-    auto* const graph = new std::shared_ptr<JackGraph>(std::move(graph_));
-    jack_calls().run(kClosesWithin, [graph] { delete graph; });
+    graph().pump().close();
+    jack_calls().run(kClosesWithin, [graph = graph_.release()] { delete graph; });
   }
   JackStream(const JackStream&) = delete;
   JackStream& operator=(const JackStream&) = delete;
@@ -34,7 +35,7 @@ class JackStream final : public AudioStream {
   Result<void> start() override;
   // The client stays in the graph, silent, and keeps the connections others made.
   void stop() override {
-    graph_->pump().close();
+    graph().pump().close();
     is_started_ = false;
   }
   const AudioFormat& format() const override { return format_; }
@@ -44,7 +45,9 @@ class JackStream final : public AudioStream {
   void look();
   void follow_server();
 
-  std::shared_ptr<JackGraph> graph_;
+  JackGraph& graph() const noexcept { return **graph_; }
+
+  std::unique_ptr<std::shared_ptr<JackGraph>> graph_;  ///< held so that it can be left behind
   AudioFormat format_;
   std::vector<std::string> playback_;  ///< the port each channel is connected to
   bool is_active_ = false, is_started_ = false;
@@ -70,7 +73,7 @@ Result<void> JackStream::start() {
   if (!is_active_) {
     const auto fault = std::make_shared<std::string>();
     const auto outcome =
-        jack_calls().run(kServerAnswersWithin, [graph = graph_, playback = playback_, fault] {
+        jack_calls().run(kServerAnswersWithin, [graph = *graph_, playback = playback_, fault] {
           *fault = activate_and_connect(*graph, playback);
         });
     if (outcome != PatientCall::Outcome::done) *fault = "the JACK server does not answer";
@@ -78,22 +81,22 @@ Result<void> JackStream::start() {
     is_active_ = true;
   }
   watch_.restart(steady_clock_ns());
-  graph_->pump().open();
+  graph().pump().open();
   is_started_ = true;
   return {};
 }
 
 void JackStream::follow_server() {
-  JackGraph::News& news = graph_->news();
+  JackGraph::News& news = graph().news();
   format_.block_frames = news.block_frames;
   format_.is_freewheeling = news.is_freewheeling;
   jack_latency_range_t range{};
-  jack_port_get_latency_range(graph_->output(0), JackPlaybackLatency, &range);
+  jack_port_get_latency_range(graph().output(0), JackPlaybackLatency, &range);
   format_.latency_s = static_cast<double>(range.max) / format_.rate_hz;
 }
 
 void JackStream::look() {
-  JackGraph::News& news = graph_->news();
+  JackGraph::News& news = graph().news();
   if (news.is_over) {
     const std::string why = news.reason.data();
     lost_ = "the JACK server has gone" + (why.empty() ? "" : " (" + why + ")");
@@ -106,7 +109,7 @@ void JackStream::look() {
   }
   follow_server();
   const double length_ns = format_.block_frames / format_.rate_hz * 1e9;
-  if (is_started_ && watch_.is_silent(graph_->pump().blocks(), static_cast<std::int64_t>(length_ns),
+  if (is_started_ && watch_.is_silent(graph().pump().blocks(), static_cast<std::int64_t>(length_ns),
                                       steady_clock_ns())) {
     lost_ = "the JACK server has asked for no block for 0.8 s";
   }
@@ -127,15 +130,15 @@ std::vector<std::string> sources_of(jack_client_t* client, const std::string& po
 AudioStatus JackStream::status() {
   using State = AudioStatus::State;
   if (lost_.empty()) look();
-  const LoadMeter::Figures load = graph_->pump().load();
+  const LoadMeter::Figures load = graph().pump().load();
   AudioStatus status;
   status.state = !lost_.empty() ? State::lost : is_started_ ? State::running : State::stopped;
   status.reason = lost_;
-  status.blocks = graph_->pump().blocks();
-  status.xruns = graph_->news().xruns;
-  status.midi_dropped = graph_->news().midi_dropped;
+  status.blocks = graph().pump().blocks();
+  status.xruns = graph().news().xruns;
+  status.midi_dropped = graph().news().midi_dropped;
   if (lost_.empty()) {
-    status.midi_sources = sources_of(graph_->client(), format_.client_name + ":midi_in");
+    status.midi_sources = sources_of(graph().client(), format_.client_name + ":midi_in");
   }
   status.overruns = load.overruns;
   status.load = load.load;

@@ -6,7 +6,7 @@
 namespace knotwave::io {
 namespace {
 
-constexpr double kSmoothedOver_ns = 1e9;
+constexpr double kSmoothedOverNs = 1e9;
 
 // There is one writer, so a read and a write do, without the bus lock of fetch_add.
 template <class T>
@@ -24,7 +24,7 @@ void LoadMeter::count(std::int64_t busy_ns, std::int64_t length_ns) KNOTWAVE_RT 
   add<std::int64_t>(bins_[static_cast<std::size_t>(bin)], 1);
   if (busy_ns > length_ns) add<std::int64_t>(overruns_, 1);
   if (share > max_.load(std::memory_order_relaxed)) max_.store(share, std::memory_order_relaxed);
-  const double weight = std::min(1.0, static_cast<double>(length_ns) / kSmoothedOver_ns);
+  const double weight = std::min(1.0, static_cast<double>(length_ns) / kSmoothedOverNs);
   add(load_, (share - load_.load(std::memory_order_relaxed)) * weight);
 }
 

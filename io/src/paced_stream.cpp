@@ -12,11 +12,11 @@
 namespace knotwave::io {
 namespace {
 
-constexpr double kDefaultRate_hz = 48000;
+constexpr double kDefaultRateHz = 48000;
 constexpr int kDefaultBlock = 256;
 // Nobody listens, so a late block is made up for; but a computer that slept does not play its
 // sleep.
-constexpr std::int64_t kMostLate_ns = 1'000'000'000;
+constexpr std::int64_t kMostLateNs = 1'000'000'000;
 
 class PacedStream final : public AudioStream {
  public:
@@ -67,7 +67,7 @@ void PacedStream::run() {
     const steady_clock::time_point due{nanoseconds(due_ns(frame_))};
     if (changed_.wait_until(lock, due, [this] { return must_end_; })) return;
     lock.unlock();
-    if (const std::int64_t late_ns = steady_clock_ns() - due_ns(frame_); late_ns > kMostLate_ns) {
+    if (const std::int64_t late_ns = steady_clock_ns() - due_ns(frame_); late_ns > kMostLateNs) {
       frame_ += static_cast<std::int64_t>(static_cast<double>(late_ns) * 1e-9 * format_.rate_hz);
       skips_.fetch_add(1, std::memory_order_relaxed);
     }
@@ -124,7 +124,7 @@ OpenedStream open_paced_stream(const AudioConfig& config, AudioClient& client) {
   AudioFormat format;
   format.api = "none";
   format.device = "none";
-  format.rate_hz = config.rate_hz == 0 ? kDefaultRate_hz : config.rate_hz;
+  format.rate_hz = config.rate_hz == 0 ? kDefaultRateHz : config.rate_hz;
   format.block_frames = config.block_frames == 0 ? kDefaultBlock : config.block_frames;
   format.channels = static_cast<int>(config.channels.size());
   return std::unique_ptr<AudioStream>(new PacedStream(format, client));

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kOpensWithin{5000}, kStartsWithin{3000};
 constexpr std::chrono::milliseconds kStopsWithin{800};
-constexpr double kMostLatency_s = 10;  // PipeWire has said 89478 s
+constexpr double kMostLatencySeconds = 10;  // PipeWire has said 89478 s
 
 /// What the callback works on. Destroyed inside portaudio_calls().
 class PortAudioDevice {
@@ -115,12 +115,12 @@ Result<void> PortAudioDevice::open(const AudioConfig& config, const FoundDevice&
 class PortAudioStream final : public AudioStream {
  public:
   PortAudioStream(std::shared_ptr<PortAudioDevice> device, AudioFormat format)
-      : device_(std::move(device)), format_(std::move(format)) {}
+      : device_(std::make_unique<std::shared_ptr<PortAudioDevice>>(std::move(device))),
+        format_(std::move(format)) {}
   // The device goes with the call that closes it, however late, and stays where that is refused.
   ~PortAudioStream() override {
-    device_->pump().close();
-    auto* const device = new std::shared_ptr<PortAudioDevice>(std::move(device_));
-    run_portaudio(kStopsWithin, [device] { delete device; });
+    device().pump().close();
+    run_portaudio(kStopsWithin, [device = device_.release()] { delete device; });
   }
   PortAudioStream(const PortAudioStream&) = delete;
   PortAudioStream& operator=(const PortAudioStream&) = delete;
@@ -133,7 +133,10 @@ class PortAudioStream final : public AudioStream {
  private:
   void look();
 
-  std::shared_ptr<PortAudioDevice> device_;
+  PortAudioDevice& device() const noexcept { return **device_; }
+
+  std::unique_ptr<std::shared_ptr<PortAudioDevice>>
+      device_;  ///< held so that it can be left behind
   AudioFormat format_;
   bool is_started_ = false;
   std::string lost_;  ///< why
@@ -143,14 +146,14 @@ class PortAudioStream final : public AudioStream {
 Result<void> PortAudioStream::start() {
   if (!lost_.empty()) return fail(ErrorCode::io_failed, lost_);
   if (is_started_) return {};
-  device_->pump().open();
+  device().pump().open();
   const auto fault = std::make_shared<PaError>(paTimedOut);
-  run_portaudio(kStartsWithin, [device = device_, fault] {
+  run_portaudio(kStartsWithin, [device = *device_, fault] {
     *fault = Pa_IsStreamActive(device->stream()) == 1 ? static_cast<PaError>(paNoError)
                                                       : Pa_StartStream(device->stream());
   });
   if (*fault != paNoError) {
-    device_->pump().close();
+    device().pump().close();
     return fail(ErrorCode::io_failed,
                 format_.api + " '" + format_.device + "': " + Pa_GetErrorText(*fault));
   }
@@ -160,22 +163,22 @@ Result<void> PortAudioStream::start() {
 }
 
 void PortAudioStream::stop() {
-  device_->pump().close();
+  device().pump().close();
   if (!is_started_) return;
   is_started_ = false;
   if (!lost_.empty()) return;  // it would hang
   const auto outcome =
-      run_portaudio(kStopsWithin, [device = device_] { Pa_StopStream(device->stream()); });
+      run_portaudio(kStopsWithin, [device = *device_] { Pa_StopStream(device->stream()); });
   if (outcome != PatientCall::Outcome::done) lost_ = kPortAudioHangs;
 }
 
 void PortAudioStream::look() {
   if (!is_started_) return;
-  if (device_->block_frames() > 0) format_.block_frames = device_->block_frames();
+  if (device().block_frames() > 0) format_.block_frames = device().block_frames();
   const double length_ns = format_.block_frames / format_.rate_hz * 1e9;
-  if (Pa_IsStreamActive(device_->stream()) != 1) {
+  if (Pa_IsStreamActive(device().stream()) != 1) {
     lost_ = "the device has stopped";
-  } else if (watch_.is_silent(device_->pump().blocks(), static_cast<std::int64_t>(length_ns),
+  } else if (watch_.is_silent(device().pump().blocks(), static_cast<std::int64_t>(length_ns),
                               steady_clock_ns())) {
     lost_ = "the device has asked for no block for 0.8 s";
   }
@@ -185,12 +188,12 @@ void PortAudioStream::look() {
 AudioStatus PortAudioStream::status() {
   using State = AudioStatus::State;
   if (lost_.empty()) look();
-  const LoadMeter::Figures load = device_->pump().load();
+  const LoadMeter::Figures load = device().pump().load();
   AudioStatus status;
   status.state = !lost_.empty() ? State::lost : is_started_ ? State::running : State::stopped;
   status.reason = lost_;
-  status.blocks = device_->pump().blocks();
-  status.xruns = device_->xruns();
+  status.blocks = device().pump().blocks();
+  status.xruns = device().xruns();
   status.overruns = load.overruns;
   status.load = load.load;
   status.load_p99 = load.p99;
@@ -209,7 +212,7 @@ OpenedStream open_device(AudioConfig config, const FoundDevice& device, AudioCli
   format.rate_hz = config.rate_hz;
   format.channels = static_cast<int>(config.channels.size());
   format.latency_s = info == nullptr ? -1 : info->outputLatency;
-  if (!(format.latency_s >= 0 && format.latency_s <= kMostLatency_s)) format.latency_s = -1;
+  if (!(format.latency_s >= 0 && format.latency_s <= kMostLatencySeconds)) format.latency_s = -1;
   format.block_frames = config.block_frames;
   if (config.block_frames == 0) {  // a guess, until the first block tells
     const double frames = std::max(format.latency_s, 0.0) * format.rate_hz;

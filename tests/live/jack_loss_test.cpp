@@ -20,7 +20,7 @@ using State = AudioStatus::State;
 using ::testing::HasSubstr;
 
 /// The limits the header states, with what an idle program's thread may have to wait for a core.
-constexpr double kAtOnce_s = 1.0, kWatch_s = 1.0, kSoundsAgain_s = 3.0;
+constexpr double kAtOnceSeconds = 1.0, kWatchSeconds = 1.0, kSoundsAgainSeconds = 3.0;
 
 class JackLossTest : public ::testing::Test {
  protected:
@@ -51,11 +51,11 @@ class JackLossTest : public ::testing::Test {
 TEST_F(JackLossTest, AKilledServerIsNoticedLeftAndFoundAgain) {
   for (int round = 0; round < 3; ++round) {
     server_.kill();
-    EXPECT_LT(seconds_until([&] { return stream_->status().state == State::lost; }, 5), kAtOnce_s);
+    EXPECT_LT(seconds_until([&] { return stream_->status().state == State::lost; }, 5), kAtOnceSeconds);
     EXPECT_THAT(stream_->status().reason, HasSubstr("the JACK server has gone"));
     EXPECT_EQ(stream_->status().state, State::lost);  // and stays so
     EXPECT_FALSE(stream_->start());
-    EXPECT_LT(seconds_taken([&] { stream_.reset(); }), kAtOnce_s);
+    EXPECT_LT(seconds_taken([&] { stream_.reset(); }), kAtOnceSeconds);
     EXPECT_FALSE(AudioStream::is_poisoned());
     const auto refused = AudioStream::open({.api = "jack"}, client_);
     ASSERT_FALSE(refused);
@@ -67,7 +67,7 @@ TEST_F(JackLossTest, AKilledServerIsNoticedLeftAndFoundAgain) {
       stream_ = reopened(10);
       seconds_until([&] { return client_.blocks() > blocks; }, 10);
     });
-    EXPECT_LT(again_s, kSoundsAgain_s);
+    EXPECT_LT(again_s, kSoundsAgainSeconds);
     ASSERT_TRUE(stream_);
     JackCapture capture({stream_->format().client_name + ":out_1"}, 9600);
     ASSERT_TRUE(capture.wait_for(9600, 10));
@@ -79,9 +79,9 @@ TEST_F(JackLossTest, AKilledServerIsNoticedLeftAndFoundAgain) {
 TEST_F(JackLossTest, AServerThatStandsStillIsLostAndLeftBehind) {
   server_.pause();
   EXPECT_LT(seconds_until([&] { return stream_->status().state == State::lost; }, 5),
-            kWatch_s + 0.5);
+            kWatchSeconds + 0.5);
   EXPECT_THAT(stream_->status().reason, HasSubstr("no block for 0.8 s"));
-  EXPECT_LT(seconds_taken([&] { stream_.reset(); }), kAtOnce_s);
+  EXPECT_LT(seconds_taken([&] { stream_.reset(); }), kAtOnceSeconds);
   const std::int64_t blocks = client_.blocks();
   EXPECT_LT(seconds_taken([&] { list_audio_devices(); }), 10);
   EXPECT_FALSE(AudioStream::open({.api = "jack"}, client_));

@@ -81,6 +81,7 @@ TEST_F(JackMidiTest, ANoteSoundsAtTheVeryFrameItWasSentAt) {
   JackMidiSender sender(port("midi_in"), notes);
   ASSERT_TRUE(sender.is_connected());
   ASSERT_TRUE(sender.wait_until_sent(20));
+  EXPECT_EQ(stream_->status().midi_sources, std::vector<std::string>{"sender:out"});
   ASSERT_TRUE(capture.wait_for(capture.frames() + 4096, 20));
   stream_->stop();
   EXPECT_EQ(sender.refused(), 0);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A JACK server of a test's own, without a sound card.
 #pragma once
+#include <memory>
 #include <string>
 
-#include <sys/types.h>
-
+#include "support/background_program.h"
 #include "support/program.h"
 
 namespace knotwave::support {
@@ -32,12 +32,12 @@ class JackServer {
 
  private:
   void launch();
-  void end(int signal);
 
   int block_frames_, rate_hz_;
   std::string name_;
+  SetVariable found_by_, not_started_;
   ScratchFolder folder_;
-  pid_t process_ = -1;
+  std::unique_ptr<BackgroundProgram> program_;
   bool runs_ = false;
 };
 
@@ -45,9 +45,9 @@ class JackServer {
 class NoJackServer {
  public:
   NoJackServer();
-  ~NoJackServer();
-  NoJackServer(const NoJackServer&) = delete;
-  NoJackServer& operator=(const NoJackServer&) = delete;
+
+ private:
+  SetVariable found_by_, not_started_;
 };
 
 }  // namespace knotwave::support

@@ -155,18 +155,30 @@ class RtMidiInputs : public MidiInputs {
     return !(is_jack(api.name()) && has_alsa && is_alsa_seen_by_jack(name));
   }
 
+  /// The key of the open port of that very name; empty: none.
+  std::string open_key(const MidiApi& api, const std::string& name) const {
+    const auto found = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) {
+      return slot.input && !slot.is_virtual && slot.api == api.name() && slot.name == name;
+    });
+    return found == slots_.end() ? std::string() : found->key;
+  }
+
+  /// Of two keyboards of one make the second is "#2", and stays it when the first is unplugged.
   std::vector<Source> wanted(MidiApi& api) const {
     std::vector<Source> all;
     for (const std::string& name : api.sources()) {
-      if (!is_wanted(api, name)) continue;
-      const std::string plain = api.name() == "alsa" ? without_numbers(name) : name;
+      if (is_wanted(api, name)) all.push_back({open_key(api, name), name});
+    }
+    const auto is_taken = [&](const std::string& key) {
+      return std::any_of(all.begin(), all.end(),
+                         [&](const Source& source) { return source.key == key; });
+    };
+    for (Source& source : all) {
+      if (!source.key.empty()) continue;
+      const std::string plain = api.name() == "alsa" ? without_numbers(source.name) : source.name;
       std::string key = plain;
-      for (int twin = 2; std::any_of(all.begin(), all.end(),
-                                     [&](const Source& other) { return other.key == key; });
-           ++twin) {
-        key = plain + " #" + std::to_string(twin);
-      }
-      all.push_back({key, name});
+      for (int twin = 2; is_taken(key); ++twin) key = plain + " #" + std::to_string(twin);
+      source.key = key;
     }
     return all;
   }

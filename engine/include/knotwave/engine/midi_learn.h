@@ -46,7 +46,7 @@ Result<LearnSpec> read_midi_learn(const std::string& path);
 /// Text that parse_midi_learn() reads to an equal spec; the same spec gives the same text.
 std::string write_midi_learn(const LearnSpec& spec);
 
-/// One thread at a time. Knows no port: two keyboards that send the same controller are one knob.
+/// All by one thread, or under one lock. Knows no port: two keyboards that send the same controller are one knob.
 class MidiLearn {
  public:
   /// How a knob stands to the value in force. Of those that have not met it the player is told
@@ -89,7 +89,7 @@ class MidiLearn {
   bool is_learning() const KNOTWAVE_RT { return learns_; }
   /// True if some knob stood for it. [audio]
   bool forget(int to, int to_channel = 0) KNOTWAVE_RT;
-  /// Knobs changed since create() or the last spec(): worth saving. [any]
+  /// Knobs changed since create() or the last spec(): worth saving. [audio]
   bool has_changed() const KNOTWAVE_RT { return has_changed_; }
 
   /// Another way than by a message through here a controller took a value, 0..16383 (128 for each
@@ -101,7 +101,7 @@ class MidiLearn {
   void controllers_went_back() KNOTWAVE_RT;
 
   int size() const KNOTWAVE_RT { return size_; }
-  /// `index` is 0..size() - 1. [any]
+  /// `index` is 0..size() - 1. [audio]
   const Knob& knob(int index) const KNOTWAVE_RT { return knobs_[static_cast<std::size_t>(index)]; }
   /// For write_midi_learn(); has_changed() is false afterwards. [control]
   LearnSpec spec();

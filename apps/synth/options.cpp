@@ -2,8 +2,6 @@
 // The only file of knotwave-synth that knows CLI11.
 #include "options.h"
 
-#include <algorithm>
-#include <charconv>
 #include <string_view>
 #include <utility>
 
@@ -44,26 +42,26 @@ std::string demo_names() {
   return names;
 }
 
+std::optional<int> device_channel(std::string_view text) {
+  const auto number = command_line::number_in(text);
+  if (!number || *number != static_cast<int>(*number)) return std::nullopt;
+  return *number >= 1 && *number <= 256 ? std::optional<int>(static_cast<int>(*number))
+                                        : std::nullopt;
+}
+
 /// "1,2", or "3" for one device channel that gets both.
 std::string read_channels(const std::string& text, std::vector<int>& channels) {
-  std::vector<int> read;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (bool is_more = true; is_more;) {
-    int channel = 0;
-    const auto number = std::from_chars(at, end, channel);
-    const bool is_good = number.ec == std::errc() && channel >= 1 && channel <= 256;
-    is_more = is_good && number.ptr != end && *number.ptr == ',';
-    if (!is_good || (!is_more && number.ptr != end)) break;
-    read.push_back(channel);
-    at = number.ptr + 1;
-    if (!is_more && (read.size() == 1 || (read.size() == 2 && read[0] != read[1]))) {
-      channels = read;
-      return {};
-    }
+  const std::size_t comma = text.find(',');
+  const auto first = device_channel(std::string_view(text).substr(0, comma));
+  const auto second =
+      comma == std::string::npos ? first : device_channel(std::string_view(text).substr(comma + 1));
+  const bool is_pair = comma != std::string::npos;
+  if (!first || !second || (is_pair && *first == *second)) {
+    return "'" + text + "' is neither one channel of the device from 1 to 256 nor two different " +
+           "ones, as in 1,2";
   }
-  return "'" + text + "' is neither one channel of the device from 1 to 256 nor two different " +
-         "ones, as in 1,2";
+  channels = is_pair ? std::vector{*first, *second} : std::vector{*first};
+  return {};
 }
 
 std::string read_osc(const std::string& text, std::optional<io::OscPlace>& osc) {

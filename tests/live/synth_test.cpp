@@ -209,6 +209,47 @@ TEST_F(SynthUnderJack, WherePortAudioHangsTheProgramStartsItselfAnewWithWhatWasH
   EXPECT_EQ(synth.exit_code(), 0) << synth.err();
 }
 
+TEST_F(SynthProgram, AServerThatComesBackWithAnotherRateIsPlayedAtThatRate) {
+  auto server = std::make_unique<JackServer>(256, 48000);
+  ASSERT_TRUE(server->runs()) << server->log();
+  SynthProcess synth({"small.toml", "--json-status", "--record", "take.wav"}, here());
+  ASSERT_TRUE(synth.says("\"rate_hz\": 48000")) << synth.err();
+  {
+    JackMidiSender sender(kMidiIn, {{0, {0x90, 69, 127}}});
+    ASSERT_TRUE(sender.wait_until_sent(10));
+    seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 20);
+  }
+  server->kill();
+  ASSERT_TRUE(synth.says("the sound device is lost")) << synth.err();
+  server.reset();
+  server = std::make_unique<JackServer>(256, 44100);
+  ASSERT_TRUE(server->runs()) << server->log();
+  ASSERT_TRUE(synth.says("the sound device is back: jack: system, 44100 Hz")) << synth.err();
+  EXPECT_TRUE(synth.says("take.wav: 0:0")) << "a take ends with its engine";
+  seconds_until([&] { return synth.number("rate_hz") == 44100; }, 10);
+  seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 10);
+  EXPECT_GT(synth.number("peak_left_dbfs"), -30) << "the held note";
+  synth.signal(SIGTERM);
+  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+}
+
+TEST_F(SynthUnderJack, AKnobIsLearntByMovingItAndKept) {
+  write("mod.toml",
+        std::string(render::kSmallPatch) + "[[maps]]\nfrom = \"mod\"\nto = \"pitch\"\n");
+  SynthProcess synth({"mod.toml", "--midi-learn", "desk.toml"}, at_terminal());
+  ASSERT_TRUE(synth.says("octave 4")) << synth.out();
+  synth.type("m");
+  ASSERT_TRUE(synth.says("move a knob: it will stand for the patch's controller 1"));
+  JackMidiSender sender(
+      kMidiIn, {at(0, {0xB0, 21, 10}), at(480, {0xB0, 21, 20}), at(48000, {0xB0, 21, 30})});
+  ASSERT_TRUE(sender.is_connected());
+  EXPECT_TRUE(synth.says("controller 21 stands for 1 now; kept in desk.toml")) << synth.out();
+  EXPECT_TRUE(synth.says("controller 1: 30, channel 1")) << "what the engine hears";
+  EXPECT_THAT(read("desk.toml"), HasSubstr("from = 21"));
+  synth.type("q");
+  EXPECT_EQ(synth.exit_code(), 0);
+}
+
 TEST_F(SynthUnderJack, CtrlCFadesOut) {
   SynthProcess synth({"small.toml", "--json-status"}, here());
   ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
@@ -261,6 +302,19 @@ TEST_F(SynthProgram, WithoutADeviceSaysWhatToDoAndRecordsAllTheSame) {
   EXPECT_GT(io::read_sound(file("a.wav"))->frames, 4800);
 }
 
+TEST_F(SynthProgram, AFullDiskEndsTheTakeAndNotTheSound) {
+  support::ProgramOptions options;
+  options.folder = folder_.path();
+  options.max_file_bytes = 100'000;
+  const auto done = support::run_program({"knotwave-synth", "small.toml", "--audio-api", "none",
+                                          "--record", "a.wav", "--duration", "2"},
+                                         options);
+  EXPECT_THAT(done.err, HasSubstr("the take is lost: "));
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_GT(done.wall_s, 1.9);
+  EXPECT_FALSE(std::filesystem::exists(file("a.wav")));
+}
+
 TEST_F(SynthProgram, PlaysWhatOscSaysAndTellsWhatItDoesNotUnderstandOnce) {
   SynthProcess synth({"small.toml", "--audio-api", "none", "--json-status", "--osc", "47391"},
                      here());
@@ -270,6 +324,13 @@ TEST_F(SynthProgram, PlaysWhatOscSaysAndTellsWhatItDoesNotUnderstandOnce) {
   seconds_until([&] { return synth.number("voices") == 1; }, 20);
   EXPECT_EQ(synth.number("voices"), 1);
   EXPECT_EQ(synth.field("last_midi"), "note on A4 (69), velocity 127, channel 1");
+  seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 20);
+  const double loud_dbfs = synth.number("peak_left_dbfs");
+  lo_send(to, "/target/amp", "f", -20.f);
+  seconds_until([&] { return synth.number("peak_left_dbfs") < loud_dbfs - 19; }, 20);
+  EXPECT_NEAR(synth.number("peak_left_dbfs"), loud_dbfs - 20, 0.2);
+  lo_send(to, "/target/amb", "f", -20.f);
+  EXPECT_TRUE(synth.says("OSC /target/amb: ")) << synth.err();
   for (int i = 0; i < 3; ++i) lo_send(to, "/nota", "");
   ASSERT_TRUE(synth.says("OSC /nota means nothing here; did you mean '/note'?"));
   write("other.toml", render::kSmallPatch);

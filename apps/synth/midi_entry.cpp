@@ -139,6 +139,7 @@ std::vector<std::string> MidiEntry::to_turn() {
     }
   }
   std::vector<std::string> lines;
+  lines.reserve(knobs.size());
   for (const auto& [controller, pick_up] : knobs) {
     lines.push_back("controller " + std::to_string(controller) + ": turn it " +
                     (pick_up == PickUp::too_low ? "up" : "down"));

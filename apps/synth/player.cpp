@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::int64_t kTryEveryNs = 500'000'000;
 constexpr double kFadeSeconds = 0.05;
+constexpr std::size_t kMostRecords = 2'000'000;  ///< some 130 MB
 
 std::string device_words(const io::AudioFormat& format) {
   return format.api + (format.device.empty() ? "" : ": " + format.device) + ", " +
@@ -107,6 +108,7 @@ Result<void> Player::make_engine() {
   gate_.lead_to(nullptr);
   live_ = *std::move(live);
   journal_ = {};
+  is_journal_whole_ = true;
   records_held_ = 0;
   gate_.lead_to(live_.get());
   return {};
@@ -175,6 +177,11 @@ const engine::Journal& Player::journal() {
   live_->take_journal(journal_);
   for (; records_held_ < journal_.records.size(); ++records_held_) {
     held_.add(journal_.records[records_held_]);
+  }
+  if (journal_.records.size() > kMostRecords) {
+    journal_ = {};
+    records_held_ = 0;
+    is_journal_whole_ = false;
   }
   return journal_;
 }

@@ -46,8 +46,9 @@ class Player final : private io::AudioClient, private io::MidiListener {
   EngineGate& gate() { return gate_; }
   MidiEntry& entry() { return entry_; }
   engine::LiveEngine& live() { return *live_; }
-  /// All that happened since engine time 0.
+  /// All that happened since engine time 0, or since memory for it had an end.
   const engine::Journal& journal();
+  bool is_journal_whole() const { return is_journal_whole_; }
 
   /// Device, engine and MIDI of a status.
   void describe(SynthStatus& status);
@@ -92,6 +93,7 @@ class Player final : private io::AudioClient, private io::MidiListener {
   MidiEntry entry_{gate_};
   std::unique_ptr<engine::LiveEngine> live_;
   engine::Journal journal_;
+  bool is_journal_whole_ = true;
   std::size_t records_held_ = 0;  ///< of the journal, which held_ knows
   HeldState held_;
   std::unique_ptr<io::AudioStream> stream_;

@@ -40,7 +40,7 @@ class PortNotes {
     return is_set;
   }
   std::uint64_t& half(int channel, int key) noexcept {
-    return keys_[static_cast<std::size_t>(2 * channel + (key >> 6))];
+    return keys_[2 * static_cast<std::size_t>(channel) + static_cast<std::size_t>(key >> 6)];
   }
 
   std::array<std::uint64_t, 32> keys_{};

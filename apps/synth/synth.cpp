@@ -236,6 +236,19 @@ void Synth::begin_take() {
   tell("recording " + path);
 }
 
+/// What went wrong with the files beside the sound.
+std::vector<std::string> Synth::write_beside(const Recorder::Take& take) {
+  const engine::Journal& journal = player_->journal();
+  if (!player_->is_journal_whole() || player_->live().status().journal_dropped > 0) {
+    return {
+        "more was played since the start than a journal holds: this take has none, and cannot "
+        "be rendered again"};
+  }
+  std::vector<std::string> faults = write_take_files(take, journal);
+  has_failed_ = has_failed_ || !faults.empty();
+  return faults;
+}
+
 void Synth::end_take() {
   if (!recorder_) return;
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
@@ -244,13 +257,7 @@ void Synth::end_take() {
     has_failed_ = true;
     return tell("the take is lost: " + take.error().to_string());
   }
-  const engine::Journal& journal = player_->journal();
-  const std::vector<std::string> faults = write_beside(*take, journal);
-  has_failed_ = has_failed_ || !faults.empty();
-  tell_all(faults);
-  if (player_->live().status().journal_dropped > 0) {
-    tell("so much was played at once that the journal has gaps: the take cannot be rendered again");
-  }
+  tell_all(write_beside(*take));
   tell(take->path + ": " + clock_text(static_cast<double>(take->frames) / player_->rate_hz()) +
        (take->sha256.empty() ? ", with gaps" : ", sha256 " + take->sha256));
 }

@@ -56,6 +56,7 @@ class Synth {
 
   void begin_take();
   void end_take();
+  std::vector<std::string> write_beside(const Recorder::Take& take);
 
   void tell(const std::string& line);
   void tell_all(const std::vector<std::string>& lines);

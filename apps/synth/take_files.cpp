@@ -21,7 +21,7 @@ Result<void> write_midi(const std::string& path, const engine::Journal& journal)
 
 }  // namespace
 
-std::vector<std::string> write_beside(const Recorder::Take& take, engine::Journal journal) {
+std::vector<std::string> write_take_files(const Recorder::Take& take, engine::Journal journal) {
   journal.first = take.first;
   journal.end = take.first + take.frames;
   journal.sha256 = take.sha256;

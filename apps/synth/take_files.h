@@ -12,6 +12,6 @@ namespace knotwave::synth {
 
 /// Writes FILE.journal and FILE.mid beside FILE.wav. `journal` is everything since engine time 0.
 /// Returns what went wrong, one line each.
-std::vector<std::string> write_beside(const Recorder::Take& take, engine::Journal journal);
+std::vector<std::string> write_take_files(const Recorder::Take& take, engine::Journal journal);
 
 }  // namespace knotwave::synth

@@ -100,8 +100,8 @@ void HeldState::add_controller(Channel& channel, int number, int value) {
 
 /// MIDI 1.0, RP-015: bank, volume, pan, program and registered parameters stay.
 void HeldState::reset_controllers(Channel& channel) {
-  for (const std::size_t number : {1, 2, 4, 11, 64, 65, 66, 67, 68, 69}) {
-    channel.controllers[number] = -1;
+  for (const int number : {1, 2, 4, 11, 64, 65, 66, 67, 68, 69}) {
+    channel.controllers[static_cast<std::size_t>(number)] = -1;
   }
   channel.bend = channel.pressure = -1;
   channel.rpn = -1;

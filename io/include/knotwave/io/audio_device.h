@@ -93,13 +93,13 @@ struct AudioStatus {
   std::int64_t blocks = 0;
   std::int64_t xruns = 0;     ///< as the device counts them
   std::int64_t overruns = 0;  ///< blocks whose process() took longer than they last
-  std::int64_t midi_dropped =
-      0;  ///< messages of the stream's MIDI port that were not complete ones
+  /// Messages of the stream's MIDI port that were not complete ones.
+  std::int64_t midi_dropped = 0;
   /// Who is connected to that port, by JACK's names: "a2j:Keystep".
   std::vector<std::string> midi_sources;
   double load = 0;  ///< share of the deadline process() takes, smoothed over 1 s
-  double load_p99 = 0,
-         load_max = 0;  ///< since open(); p99 rounded up by 1 % of the deadline at most
+  /// Since open(); p99 is rounded up, by 1 % of the deadline at most.
+  double load_p99 = 0, load_max = 0;
 };
 
 /// Open from open() to the destructor. [control] unless said otherwise. Of one thread.

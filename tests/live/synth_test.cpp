@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <lo/lo.h>
 #include <termios.h>
+#include <unistd.h>
 
 #include "knotwave/io/audio_device.h"
 #include "knotwave/io/midi_file.h"
@@ -77,6 +78,9 @@ class SynthUnderJack : public SynthTake {
 
   JackServer server_{256};
 };
+
+/// Of this process alone, as tests run side by side.
+std::string osc_port() { return std::to_string(20000 + ::getpid() % 12000); }
 
 /// Where two channels begin to sound; their size if they never do.
 std::size_t onset(const std::vector<float>& samples) {
@@ -187,10 +191,11 @@ TEST_F(SynthUnderJack, AKilledServerIsToldAndAfterItsReturnTheHeldNoteSoundsWith
 
 TEST_F(SynthUnderJack, WherePortAudioHangsTheProgramStartsItselfAnewWithWhatWasHeld) {
   SynthProcess synth(
-      {"small.toml", "--json-status", "--audio-api", "portaudio-jack", "--osc", "47392"}, here());
+      {"small.toml", "--json-status", "--audio-api", "portaudio-jack", "--osc", osc_port()},
+      here());
   ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
   write("other.toml", render::kSmallPatch);
-  lo_address to = lo_address_new("127.0.0.1", "47392");
+  lo_address to = lo_address_new("127.0.0.1", osc_port().c_str());
   lo_send(to, "/patch", "s", "other.toml");
   ASSERT_TRUE(synth.says("now playing other.toml"));
   lo_send(to, "/note", "ii", 69, 127);
@@ -316,10 +321,10 @@ TEST_F(SynthProgram, AFullDiskEndsTheTakeAndNotTheSound) {
 }
 
 TEST_F(SynthProgram, PlaysWhatOscSaysAndTellsWhatItDoesNotUnderstandOnce) {
-  SynthProcess synth({"small.toml", "--audio-api", "none", "--json-status", "--osc", "47391"},
+  SynthProcess synth({"small.toml", "--audio-api", "none", "--json-status", "--osc", osc_port()},
                      here());
-  ASSERT_TRUE(synth.says("\"osc\": \"127.0.0.1:47391\"")) << synth.err();
-  lo_address to = lo_address_new("127.0.0.1", "47391");
+  ASSERT_TRUE(synth.says("\"osc\": \"127.0.0.1:" + osc_port() + "\"")) << synth.err();
+  lo_address to = lo_address_new("127.0.0.1", osc_port().c_str());
   lo_send(to, "/note", "ii", 69, 127);
   seconds_until([&] { return synth.number("voices") == 1; }, 20);
   EXPECT_EQ(synth.number("voices"), 1);
@@ -343,9 +348,9 @@ TEST_F(SynthProgram, PlaysWhatOscSaysAndTellsWhatItDoesNotUnderstandOnce) {
   EXPECT_EQ(told.find("OSC /nota"), told.rfind("OSC /nota")) << told;
   lo_address_free(to);
 
-  SynthProcess second({"small.toml", "--audio-api", "none", "--osc", "47391"}, here());
+  SynthProcess second({"small.toml", "--audio-api", "none", "--osc", osc_port()}, here());
   EXPECT_EQ(second.exit_code(), 1);
-  EXPECT_THAT(second.err(), HasSubstr("OSC at 127.0.0.1:47391: the port is in use"));
+  EXPECT_THAT(second.err(), HasSubstr("OSC at 127.0.0.1:" + osc_port() + ": the port is in use"));
 }
 
 TEST_F(SynthProgram, KeysOfATerminalPlayAndTheTerminalIsPutBack) {

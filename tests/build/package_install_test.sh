@@ -35,6 +35,10 @@ done
 (cd /usr/share/knotwave && knotwave-curve check examples/banks/*.toml &&
   knotwave-render --quiet examples/patches/bell.toml examples/scores/first-light.mid -o "$work/bell.wav")
 knotwave-render --quiet --demo first-light -o "$work/first-light.wav"
+if [ -x /usr/bin/knotwave-synth ]; then
+  knotwave-synth --audio-api none --duration 1 --plain --record "$work/take.wav" </dev/null
+  [ -s "$work/take.wav" ] || { echo "knotwave-synth recorded nothing"; exit 1; }
+fi
 dpkg --verify knotwave
 
 "${apt[@]}" purge -y knotwave >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }

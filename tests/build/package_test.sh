@@ -44,12 +44,7 @@ tree() {
   printf 'usr/share/doc/knotwave/%s\n' README.md CHANGELOG.md LICENSE changelog.gz copyright examples
 } >"$work/knotwave"
 {
-  for module in base curves curves/c dsp engine io; do  # a header is public when CMakeLists.txt names it
-    tree "$module/include" usr/include h | while IFS= read -r header; do
-      name=$(basename "$header" .h)
-      if grep -qE "(^|[^a-z_])$name(\.h)?([^a-z_]|$)" "$source/$module/CMakeLists.txt"; then echo "$header"; fi
-    done
-  done
+  for module in base curves curves/c dsp engine io; do tree "$module/include" usr/include h; done
   for module in base curves dsp engine io; do printf '%s\n' "$lib/libknotwave_$module.a" "$lib/pkgconfig/knotwave-$module.pc"; done
   printf "$lib/%s\n" libknotwave_curves_c.so libknotwave_curves_c.so.1 pkgconfig/knotwave-curves-c.pc
   printf "$lib/cmake/knotwave/%s\n" knotwave-config.cmake knotwave-config-version.cmake knotwave_targets.cmake \

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "compile_parts.h"
+#include "piece_rounding.h"
 #include "time_inversion.h"
 
 namespace knotwave::curves {
@@ -24,20 +25,9 @@ Error no_controls(const NurbsCurve& curve, const std::string& why) {
   return fail(ErrorCode::unsupported, "curve '" + curve.name() + "': no controls " + why);
 }
 
-/// A proved bound this small against the curve's values is taken without measuring how far below
-/// it the error is. Up to degree 5 it is, but where weights lie far apart.
+/// A bound this small against the curve's values is taken without a look for a smaller one. Up to
+/// degree 5 it is, but where weights lie far apart.
 constexpr double kNegligible = 0x1p-40;
-
-/// Infinity where nothing is proved: pieces that were fitted, one weight for all points, controls.
-double proved_bound(const NurbsCurve& curve, const ProgramParts& parts) {
-  const bool is_exact = parts.degree == curve.degree() && parts.max_error == 0 &&
-                        parts.rational == curve.is_rational();
-  const bool is_scaled = !parts.rational && curve.weights().front() != 1;
-  if (!is_exact || is_scaled || !parts.control_rest.empty()) {
-    return std::numeric_limits<double>::infinity();
-  }
-  return rounding_bound(parts);
-}
 
 double negligible(const ProgramParts& parts) {
   double largest = 0;
@@ -47,57 +37,68 @@ double negligible(const ProgramParts& parts) {
   return kNegligible * largest;
 }
 
-/// The program of finished pieces, its error against the curve measured once more by
-/// NurbsCurve::evaluate, which knows nothing of pieces, where it is not proved.
-Result<CurveProgram> checked_program(const NurbsCurve& curve, ProgramParts parts,
-                                     const CompileOptions& options) {
+Error missed_by_rounding(const NurbsCurve& curve, double error, double asked) {
+  return missed_bound(curve, error, asked, "this is rounding; weights or points are too far apart");
+}
+
+/// With controls: measured at rest and at the corners of their ranges by NurbsCurve::evaluate,
+/// which knows nothing of pieces.
+Result<CurveProgram> measured_program(const NurbsCurve& curve, ProgramParts parts,
+                                      const CompileOptions& options) {
+  CurveProgram program = ProgramBuilder::build(std::move(parts));
+  const auto error = measured_error(program, curve, options.controls);
+  if (!error) return error.error();
+  if (!(*error <= options.max_error)) {
+    return missed_by_rounding(curve, *error, options.max_error);
+  }
+  ProgramBuilder::set_max_error(program, *error);
+  return program;
+}
+
+/// The most that any piece rounds away.
+double rounding_of_all(const ProgramParts& parts, double asked) {
+  double worst = 0;
+  for (std::size_t i = 0; i < parts.pieces() && worst <= asked; ++i) {
+    worst = std::max(worst, piece_rounding(parts, i, asked));
+  }
+  return worst;
+}
+
+/// The spans as they are, but cut where they would round away more than asked: proved.
+Result<CurveProgram> exact_program(const NurbsCurve& curve, const CompileOptions& options) {
+  ProgramParts parts = exact_parts(curve, options.controls);
   if (static_cast<int>(parts.pieces()) > options.max_pieces) {
     return fail(ErrorCode::error_bound_missed,
                 "curve '" + curve.name() + "' has " + std::to_string(parts.pieces()) + " spans, " +
                     std::to_string(options.max_pieces) + " pieces are allowed");
   }
-  const double fit_error = parts.max_error;
-  const double bound = proved_bound(curve, parts);
-  const bool is_proved = bound <= negligible(parts);
-  CurveProgram program = ProgramBuilder::build(std::move(parts));
-  double error = bound;
-  if (!is_proved) {
-    const auto measured = measured_error(program, curve, options.controls);
-    if (!measured) return measured.error();
-    error = bound < *measured ? bound : *measured;  // NaN stays
+  if (!options.controls.empty()) return measured_program(curve, std::move(parts), options);
+  parts.max_error = rounding_bound(parts);
+  if (!(parts.max_error <= negligible(parts))) {
+    parts.max_error = rounding_of_all(parts, options.max_error);
   }
-  if (!(error <= options.max_error)) {
-    return missed_bound(curve, error, options.max_error,
-                        "this is rounding; weights or points are too far apart");
+  if (!(parts.max_error <= options.max_error)) {
+    const double all = rounding_of_all(parts, std::numeric_limits<double>::infinity());
+    parts.max_error = 0;
+    if (!cut_to_rounding(curve, options, parts)) {
+      return missed_by_rounding(curve, all, options.max_error);
+    }
   }
-  ProgramBuilder::set_max_error(program, std::max(error, fit_error));
-  return program;
+  return ProgramBuilder::build(std::move(parts));
 }
 
 Result<CurveProgram> fitted_program(const NurbsCurve& curve, const CompileOptions& options,
                                     Meeting meeting) {
   auto parts = fitted_parts(curve, options, meeting);
   if (!parts) return parts.error();
-  return checked_program(curve, std::move(*parts), options);
-}
-
-Result<CurveProgram> exact_program(const NurbsCurve& curve, const CompileOptions& options) {
-  return checked_program(curve, exact_parts(curve, options.controls), options);
+  return ProgramBuilder::build(std::move(*parts));
 }
 
 }  // namespace
 
 Result<CurveProgram> compile_parametric(const NurbsCurve& curve, const CompileOptions& options) {
   if (auto checked = check_options(curve, options); !checked) return checked.error();
-  if (curve.degree() <= kMaxPieceDegree) {
-    auto exact = exact_program(curve, options);
-    if (exact || !options.controls.empty()) return exact;
-    const ProgramParts parts = exact_parts(curve, {});
-    if (proved_bound(curve, parts) <= negligible(parts)) return exact;
-    // Weights a million to one apart can round away too much; shorter pieces then still meet it.
-    auto shorter = fitted_program(curve, options, Meeting::value);
-    return shorter ? std::move(shorter) : std::move(exact);
-  }
+  if (curve.degree() <= kMaxPieceDegree) return exact_program(curve, options);
   if (options.controls.empty()) return fitted_program(curve, options, Meeting::slope);
   return no_controls(curve, "above degree " + std::to_string(kMaxPieceDegree) +
                                 ", this curve has degree " + std::to_string(curve.degree()));

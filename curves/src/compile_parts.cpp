@@ -11,6 +11,7 @@
 #include "live_spline.h"
 #include "piece_bounds.h"
 #include "piece_fit.h"
+#include "piece_proof.h"
 
 namespace knotwave::curves {
 namespace {
@@ -30,12 +31,16 @@ std::vector<double> end_values(const NurbsCurve& curve, int point,
   return values;
 }
 
-/// Copies a term's rows into place in each piece.
-void place_term(ProgramParts& parts, const std::vector<SpanPolynomial>& spans, std::size_t term) {
+/// Copies a term's rows into place in each piece. One weight for all points is divided out where
+/// pieces have no denominator.
+void place_term(ProgramParts& parts, const std::vector<SpanPolynomial>& spans, std::size_t term,
+                double weight) {
   for (std::size_t i = 0; i < spans.size(); ++i) {
     double* out =
         parts.coefficients.data() + i * parts.piece_size() + term * parts.rows() * parts.powers();
-    for (std::size_t r = 0; r < parts.rows() * parts.powers(); ++r) out[r] = spans[i].rows[r].hi;
+    for (std::size_t r = 0; r < parts.rows() * parts.powers(); ++r) {
+      out[r] = (spans[i].rows[r] / DoubleDouble(weight)).hi;
+    }
   }
 }
 
@@ -78,18 +83,6 @@ std::vector<double> looks_of(bool delicate) {
   for (double gap = 0x1p-6; gap > 0x1p-50; gap *= closer) looks.push_back(1 - gap);
   for (int last = 1; delicate && last <= 16; ++last) looks.push_back(1 - last * 0x1p-53);
   return looks;
-}
-
-/// What a row's value is off by, in units of 2^-53. Of the power k: 1 rounding of the coefficient,
-/// 2 k + 1 of Horner's products and sums, and 4 k of t, which is a difference times an inverse of a
-/// width (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 5.1). Clamping to the
-/// hull only brings a value nearer.
-double rounding_units(std::span<const double> row) {
-  double units = 0;
-  for (std::size_t k = 0; k < row.size(); ++k) {
-    units += static_cast<double>(6 * k + 2) * std::abs(row[k]);
-  }
-  return units;
 }
 
 double error_at_corner(const CurveProgram& program, const NurbsCurve& curve,
@@ -153,9 +146,10 @@ ProgramParts exact_parts(const NurbsCurve& curve, const std::vector<ControlRange
   for (const SpanPolynomial& span : spans) parts.breaks.push_back(span.u0);
   parts.breaks.push_back(spans.back().u1);
   parts.coefficients.assign(spans.size() * parts.piece_size(), 0.0);
-  place_term(parts, spans, 0);
+  const double weight = parts.rational ? 1.0 : curve.weights().front();
+  place_term(parts, spans, 0, weight);
   for (std::size_t k = 0; k < controls.size(); ++k) {
-    place_term(parts, span_polynomials(control_term(curve, controls[k])), k + 1);
+    place_term(parts, span_polynomials(control_term(curve, controls[k])), k + 1, weight);
   }
   if (moves_knots(controls)) parts.live = std::make_shared<const LiveSpline>(curve, controls);
   return parts;
@@ -176,7 +170,8 @@ Result<ProgramParts> fitted_parts(const NurbsCurve& curve, const CompileOptions&
       const DoubleDouble t = (u - DoubleDouble(span.u0)) / width;
       for (int c = 0; c < span.dim; ++c) out[at(c)] = coordinate_slope_at(span, c, t) / width;
     };
-    if (!fit_pieces(target, span.u0, span.u1, limits, pieces,
+    const ParameterProof proof(span, limits);
+    if (!fit_pieces(target, span.u0, span.u1, limits, proof, pieces,
                     meeting == Meeting::slope ? &slopes : nullptr)) {
       return too_many_pieces(curve, options);
     }
@@ -231,8 +226,7 @@ Result<double> measured_error(const CurveProgram& program, const NurbsCurve& cur
     const double error = error_at_corner(program, *moved, values, looks);
     worst = error <= worst ? worst : error;
   }
-  const bool is_rounding = delicate || program.max_error() == 0;  // else the fit's own error leads
-  return (is_rounding ? 2 * worst : worst) + kBetweenLooks * largest;
+  return 2 * worst + kBetweenLooks * largest;
 }
 
 Error missed_bound(const NurbsCurve& curve, double error, double asked, const std::string& why) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What holds the values of a piece. Private to curves. [control]
+// What holds the values of a piece, and what they may be off by. Private to curves. [control]
 #pragma once
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "knotwave/curves/curve_program.h"
@@ -25,6 +26,18 @@ inline PieceRow bernstein_row(std::span<const double> powers) {
     for (std::size_t j = count - 1; j >= from; --j) b[j] += b[j - 1];
   }
   return b;
+}
+
+/// What a row's value is off by, in units of 2^-53. Of the power k: 1 rounding of the coefficient,
+/// 2 k + 1 of Horner's products and sums, and 4 k of t, which is a difference times an inverse of a
+/// width (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 5.1). Clamping to the
+/// hull only brings a value nearer.
+inline double rounding_units(std::span<const double> row) {
+  double units = 0;
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    units += static_cast<double>(6 * k + 2) * std::abs(row[k]);
+  }
+  return units;
 }
 
 }  // namespace knotwave::curves

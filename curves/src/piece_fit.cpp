@@ -2,11 +2,11 @@
 #include "piece_fit.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
+#include <limits>
 
 #include "grid_kernel.h"
+#include "next_double.h"
 
 namespace knotwave::curves {
 namespace {
@@ -30,23 +30,13 @@ constexpr double kNode[kNodes] = {0,
 constexpr double kSmoothNode[kNodes] = {
     0, 0, 0.18643877146460758, 0.39029199957105914, 0.6097080004289408, 0.8135612285353924, 1, 1};
 
-// Looks between two nodes. The error is one arch there, leaning at a double node; 8 looks find its
-// top within 3.5 %, and the reported error is raised by this much, the accepted one lowered by
-// more.
+// Looks between two nodes. The error of a smooth target is one arch there, leaning at a double
+// node, and few looks come near its top. What is above kAccepted is halved without a proof.
 constexpr int kLooks = 6;
 constexpr int kSmoothLooks = 8;
-constexpr double kBetweenLooks = 1.04;
 constexpr double kAccepted = 0.9;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-/// The double next to x, above or below.
-double next_up(double x) {
-  if (x == 0) return std::bit_cast<double>(std::uint64_t{1});
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  return std::bit_cast<double>(x > 0 ? bits + 1 : bits - 1);
-}
-double next_down(double x) { return -next_up(-x); }
 
 struct Piece {
   double u_a = 0;
@@ -186,22 +176,26 @@ void FittedPieces::lay_out(ProgramParts& parts) const {
 }
 
 bool fit_pieces(const FitTarget& target, double u_a, double u_b, const FitLimits& limits,
-                FittedPieces& pieces, const FitTarget* slopes) {
+                const FitProof& proof, FittedPieces& pieces, const FitTarget* slopes) {
   Fitter fitter(target, limits, slopes);
   pieces.outputs = static_cast<int>(limits.low.size());
   std::vector<double> ends{u_b};  // right ends still to reach, the nearest last
   while (!ends.empty()) {
     if (pieces.count() + static_cast<int>(ends.size()) > limits.max_pieces) return false;
     const Piece piece = fitter.fit(u_a, ends.back(), pieces.right);
-    const double error = fitter.error(piece);
+    const double seen = fitter.error(piece);
+    const double error =
+        seen <= kAccepted * limits.max_error
+            ? proof({piece.u_a, piece.u_b, piece.coefficients}, seen, pieces.max_error)
+            : std::numeric_limits<double>::infinity();
     const double middle = piece.u_a + 0.5 * (piece.u_b - piece.u_a);
-    if (error > kAccepted * limits.max_error && middle > piece.u_a && middle < piece.u_b) {
+    if (!(error <= limits.max_error) && middle > piece.u_a && middle < piece.u_b) {
       ends.push_back(middle);
       continue;
     }
     pieces.add(piece.u_a, piece.u_b, piece.coefficients);
     pieces.right = piece.right;
-    pieces.max_error = std::max(pieces.max_error, kBetweenLooks * error);
+    pieces.max_error = std::max(pieces.max_error, error);
     u_a = ends.back();
     ends.pop_back();
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Any smooth function as polynomial pieces of degree kMaxPieceDegree, by bisection until the
-// measured error is small enough. Private to curves. [control]
+// error is proved small enough. Private to curves. [control]
 #pragma once
 #include <functional>
 #include <span>
@@ -38,11 +38,24 @@ struct FittedPieces {
   void lay_out(ProgramParts& parts) const;
 };
 
+/// A fitted piece on [u_a, u_b).
+struct FitPiece {
+  double u_a = 0;
+  double u_b = 0;
+  std::span<const double> coefficients;  ///< [outputs * (kMaxPieceDegree + 1)]
+};
+
+/// A bound on the error of a piece as it is played, rounding included, at every double in
+/// [u_a, u_b), over all outputs: infinity or the bound itself where it is above
+/// FitLimits::max_error. `found` has been seen by looking; below that and below `settled` it need
+/// not be tight.
+using FitProof = std::function<double(const FitPiece& piece, double found, double settled)>;
+
 /// Appends pieces of `target` over [u_a, u_b]; neighbours share the value at their break to the
-/// bit, and with `slopes` (dy/du of all outputs) the slope to rounding. A piece between two
-/// neighbouring doubles is taken as it is: no u lies inside it. False when max_pieces are not
-/// enough.
+/// bit, and with `slopes` (dy/du of all outputs) the slope to rounding. Each piece is looked at,
+/// then proved, and halved where either fails. A piece between two neighbouring doubles is taken,
+/// its error noted even if it is too large. False when max_pieces are not enough.
 bool fit_pieces(const FitTarget& target, double u_a, double u_b, const FitLimits& limits,
-                FittedPieces& pieces, const FitTarget* slopes = nullptr);
+                const FitProof& proof, FittedPieces& pieces, const FitTarget* slopes = nullptr);
 
 }  // namespace knotwave::curves

@@ -8,9 +8,9 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// C(degree, k) times the k-th forward difference of the Bernstein coefficients, for each k. The
-/// differences cancel up to 2^k of the coefficients' size, hence double-double.
-void to_powers(std::vector<DoubleDouble>& b, std::span<DoubleDouble> out) {
+}  // namespace
+
+void bernstein_to_powers(std::vector<DoubleDouble>& b, std::span<DoubleDouble> out) {
   const int degree = static_cast<int>(b.size()) - 1;
   double choose = 1;
   for (int k = 0; k <= degree; ++k) {
@@ -19,8 +19,6 @@ void to_powers(std::vector<DoubleDouble>& b, std::span<DoubleDouble> out) {
     choose = choose * (degree - k) / (k + 1);  // whole numbers
   }
 }
-
-}  // namespace
 
 std::vector<SpanPolynomial> span_polynomials(const HomogeneousCurve& curve) {
   const int p = curve.degree;
@@ -32,13 +30,21 @@ std::vector<SpanPolynomial> span_polynomials(const HomogeneousCurve& curve) {
     const double u1 = curve.domain.rounded(curve.knots[at(i) + 1]);
     if (!(u0 < u1)) continue;
     bezier_points(curve, i, points);
-    SpanPolynomial span{u0, u1, p, curve.dim, true, {}};
+    SpanPolynomial span;
+    span.u0 = u0;
+    span.u1 = u1;
+    span.degree = p;
+    span.dim = curve.dim;
+    span.is_whole = curve.points.size() == at(p + 1) && curve.knots.front() == curve.knots[at(p)] &&
+                    curve.knots.back() == curve.knots[at(p + 1)];
     span.rows.resize(at((curve.dim + 1) * (p + 1)));
+    span.bezier.reserve(span.rows.size());
     for (int c = 0; c <= curve.dim; ++c) {
       for (int r = 0; r <= p; ++r) {
         bernstein[at(r)] = c < curve.dim ? points[at(r)].x[at(c)] : points[at(r)].w;
       }
-      to_powers(bernstein, std::span(span.rows).subspan(at(c * (p + 1)), at(p + 1)));
+      span.bezier.insert(span.bezier.end(), bernstein.begin(), bernstein.end());
+      bernstein_to_powers(bernstein, std::span(span.rows).subspan(at(c * (p + 1)), at(p + 1)));
     }
     const auto weight = span.row(curve.dim);
     span.has_weights = weight[0].hi != 1 || std::any_of(weight.begin() + 1, weight.end(),

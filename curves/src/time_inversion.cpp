@@ -3,100 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "knotwave/base/document.h"
 
+#include "next_double.h"
+#include "piece_bounds.h"
 #include "piece_fit.h"
+#include "piece_proof.h"
 
 namespace knotwave::curves {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-/// Where a span's time is x: the root of N(t) - x D(t), which never falls on [0, 1]. Newton inside
-/// a bracket; at a vertical tangent the root is multiple and halving the bracket takes over.
-/// Doubles come near, double-double steps do the rest.
-class SpanClock {
- public:
-  explicit SpanClock(const SpanPolynomial& span)
-      : span_(&span), c_(span.row(0).size()), near_(c_.size()) {}
-
-  /// t in [0, 1]; times outside the span give its ends. Remembers t as the next first guess.
-  DoubleDouble parameter_at(DoubleDouble x) {
-    const auto time = span_->row(0);
-    const auto weight = span_->row(span_->dim);
-    DoubleDouble end = 0.0;
-    for (std::size_t k = 0; k < c_.size(); ++k) {
-      c_[k] = weight[k].hi == 0 ? time[k] : time[k] - x * weight[k];
-      near_[k] = c_[k].hi;
-      end += c_[k];
-    }
-    if (c_[0].hi >= 0) return 0.0;
-    if (end.hi <= 0) return 1.0;
-    const double guess = root(std::span<const double>(near_), t_.hi);
-    t_ = root(std::span<const DoubleDouble>(c_), DoubleDouble(guess));
-    return t_;
-  }
-
- private:
-  static constexpr int kMaxSteps = 200;
-
-  static double leading(double x) { return x; }
-  static double leading(DoubleDouble x) { return x.hi; }
-  static double value(std::span<const double> c, double t) {
-    double sum = c.back();
-    for (std::size_t k = c.size() - 1; k-- > 0;) sum = sum * t + c[k];
-    return sum;
-  }
-  static DoubleDouble value(std::span<const DoubleDouble> c, DoubleDouble t) {
-    return polynomial_at(c, t);
-  }
-
-  /// The slope only steers, so doubles do.
-  double slope(double t) const {
-    double sum = 0;
-    for (std::size_t k = near_.size() - 1; k > 0; --k) sum = sum * t + near_[k] * double(k);
-    return sum;
-  }
-
-  template <class Real>
-  Real root(std::span<const Real> c, Real t) const {
-    Real low = 0.0, high = 1.0;
-    double before = 1;  // size of the last step
-    bool close = false;
-    for (int step = 0; step < kMaxSteps; ++step) {
-      const Real f = value(c, t);
-      if (leading(f) == 0) return t;
-      (leading(f) > 0 ? high : low) = t;
-      const Real by = leading(f) / slope(leading(t));
-      Real next = t - by;
-      const double size = std::abs(leading(by));
-      const bool inside = leading(next - low) > 0 && leading(high - next) > 0;
-      if (close) return inside ? next : t;
-      // Out of the bracket, not a number, or not closing in: halve.
-      if (!inside || (size > 0.75 * before && step > 2)) {
-        next = (low + high) * Real(0.5);
-        before = leading(high - low);
-        if (!(before > 1e-30 * leading(t))) return t;
-      } else {
-        before = size;
-        close = size <= kClose<Real> * leading(t);
-      }
-      t = next;
-    }
-    return t;
-  }
-
-  /// Once a step is this small against t, one more makes it negligible.
-  template <class Real>
-  static constexpr double kClose = std::is_same_v<Real, double> ? 1e-9 : 1e-18;
-
-  const SpanPolynomial* span_;
-  std::vector<DoubleDouble> c_;  // N - x D
-  std::vector<double> near_;     // rounded
-  DoubleDouble t_ = 0.5;
-};
 
 /// dx/dt times the weight squared, in doubles: its sign and its small values are what is asked.
 double time_slope(const SpanPolynomial& span, double t) {
@@ -161,9 +79,54 @@ std::vector<double> affine_piece(const SpanPolynomial& span) {
   return piece;
 }
 
+/// What an affine piece can be off by: rounding, and its ends, which are times rounded.
+double affine_error(const SpanPolynomial& span, double x_a, double x_b,
+                    std::span<const double> piece) {
+  const double late = std::abs((coordinate_at(span, 0, 0.0) - DoubleDouble(x_a)).hi) +
+                      std::abs((coordinate_at(span, 0, 1.0) - DoubleDouble(x_b)).hi);
+  double worst = 0;
+  for (std::size_t c = 0; c < piece.size(); c += kMaxPieceDegree + 1) {
+    const auto row = piece.subspan(c, kMaxPieceDegree + 1);
+    double slope = 0;
+    for (std::size_t k = 1; k < row.size(); ++k) slope += double(k) * std::abs(row[k]);
+    worst = std::max(worst, late / (x_b - x_a) * slope + 0x1p-53 * rounding_units(row));
+  }
+  return worst * (1 + 0x1p-40);
+}
+
+bool stands_still(const SpanPolynomial& span) {
+  return !(coordinate_at(span, 0, 0.0).hi < coordinate_at(span, 0, 1.0).hi);
+}
+
+/// Where a span's last piece ends: its last time, rounded. Where that is earlier, the double there
+/// is played by the next span; if y moves much until the span is over, this one keeps it.
+double end_of(const SpanPolynomial& span, bool is_last, const FitLimits& limits,
+              FittedPieces& pieces) {
+  constexpr double kMuch = 0.05;
+  const DoubleDouble end = coordinate_at(span, 0, 1.0);
+  if (!(end.lo > 0)) return end.hi;
+  const double change = TimeProof(span, limits).change_after(end.hi);
+  if (!is_last && change > kMuch * limits.max_error) return next_up(end.hi);
+  pieces.max_error = std::max(pieces.max_error, change);
+  return end.hi;
+}
+
+/// The first time, rounded. The value there is that of the start, even if that is later.
+double start_of(const SpanPolynomial& span, const FitLimits& limits, FittedPieces& pieces) {
+  const DoubleDouble start = coordinate_at(span, 0, 0.0);
+  if (start.lo < 0) {
+    pieces.max_error = std::max(pieces.max_error, TimeProof(span, limits).change_before(start.hi));
+  }
+  return start.hi;
+}
+
 bool fit_span(const SpanPolynomial& span, double x_a, double x_b, const FitLimits& limits,
               FittedPieces& pieces) {
   SpanClock clock(span);
+  TimeProof prover(span, limits);
+  const FitProof proof = [&](const FitPiece& piece, double found, double settled) {
+    return prover(piece, found, settled);
+  };
   const FitTarget target = [&](DoubleDouble x, std::span<DoubleDouble> out) {
     const DoubleDouble t = clock.parameter_at(x);
     for (int c = 1; c < span.dim; ++c) out[at(c - 1)] = coordinate_at(span, c, t);
@@ -176,7 +139,7 @@ bool fit_span(const SpanPolynomial& span, double x_a, double x_b, const FitLimit
   ends.push_back(x_b);
   pieces.right.clear();
   for (const double end : ends) {
-    if (!fit_pieces(target, x_a, end, limits, pieces)) return false;
+    if (!fit_pieces(target, x_a, end, limits, proof, pieces)) return false;
     x_a = end;
   }
   return true;
@@ -263,14 +226,17 @@ Result<ProgramParts> inverted_parts(const NurbsCurve& curve, const CompileOption
   pieces.outputs = parts.dim;
   const std::vector<SpanPolynomial> spans = span_polynomials(HomogeneousCurve(curve));
   for (const SpanPolynomial& span : spans) {
+    if (stands_still(span)) continue;  // y jumps
     const double x_a =
-        pieces.breaks.empty() ? coordinate_at(span, 0, 0.0).hi : pieces.breaks.back();
-    const double x_b = coordinate_at(span, 0, 1.0).hi;
-    if (!(x_b > x_a)) continue;  // time stands still: y jumps
+        pieces.breaks.empty() ? start_of(span, limits, pieces) : pieces.breaks.back();
+    const double x_b = end_of(span, &span == &spans.back(), limits, pieces);
+    if (!(x_b > x_a)) continue;
     if (pieces.breaks.empty()) parts.start_values = values_at(span, 0.0);
     bool enough = true;
     if (is_affine(span)) {
-      pieces.add(x_a, x_b, affine_piece(span));
+      const std::vector<double> piece = affine_piece(span);
+      pieces.add(x_a, x_b, piece);
+      pieces.max_error = std::max(pieces.max_error, affine_error(span, x_a, x_b, piece));
     } else {
       enough = fit_span(span, x_a, x_b, limits, pieces);
     }

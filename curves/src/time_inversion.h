@@ -6,7 +6,7 @@
 
 namespace knotwave::curves {
 
-/// Coordinates 1.. of `curve` as functions of coordinate 0 within max_error. Errors:
+/// Coordinates 1.. of `curve` as functions of coordinate 0 within max_error, proved. Errors:
 /// not_a_function, empty_domain (time stands still), error_bound_missed. All but the hull, which is
 /// that of the coordinates, is filled in; time standing still for a while becomes a jump.
 Result<ProgramParts> inverted_parts(const NurbsCurve& curve, const CompileOptions& options);

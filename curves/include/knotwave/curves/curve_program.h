@@ -38,10 +38,10 @@ class CurveProgram {
   std::span<const double> breaks() const KNOTWAVE_RT { return breaks_; }
   /// 1 / (width of a piece), [piece_count].
   std::span<const double> inverse_widths() const KNOTWAVE_RT { return inverse_widths_; }
-  /// Largest |program - curve|, in output units: proved for spans without weights and controls
-  /// (degree <= 5 always), else found by the check in compile(), with no control moved and at the
-  /// corners of their ranges; fitted pieces: raised by 4 % for what lies between the places looked
-  /// at. One period of periodic programs: further out, u is rounded.
+  /// |program - curve| is nowhere above this, in output units: proved, rounding included, at every
+  /// double of the domain; of fitted pieces as a rule within 4 % of the largest error there is. One
+  /// period of periodic programs: further out, u is rounded. With controls it is measured, not
+  /// proved: twice the largest error found with none moved and at the corners of their ranges.
   double max_error() const noexcept { return max_error_; }
   int control_count() const KNOTWAVE_RT { return static_cast<int>(control_rest_.size()); }
   /// Control k when nothing moves it: the value written in the file. And its declared range.

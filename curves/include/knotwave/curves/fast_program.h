@@ -26,7 +26,8 @@ class FastProgram {
   /// The program in double that it was made from.
   const CurveProgram& accurate() const KNOTWAVE_RT { return program_; }
   /// No sample is further from the curve at its node, in output units: proved for every grid, the
-  /// error of accurate() and the rounding to float32 included. What is measured is 3 to 10 times
+  /// error of accurate() and the rounding to float32 included (with controls, as far as that of
+  /// accurate() is). What is measured is 3 to 10 times
   /// less.
   double max_error(int coordinate = 0) const KNOTWAVE_RT {
     return max_error_[static_cast<std::size_t>(coordinate)];

@@ -55,7 +55,7 @@ KW_API int32_t kw_program_piece_count(const kw_program* program);
 KW_API int32_t kw_program_piece_degree(const kw_program* program);
 KW_API double kw_program_u_min(const kw_program* program);
 KW_API double kw_program_u_max(const kw_program* program);
-/// Largest |program - curve| that was measured.
+/// |program - curve| is nowhere above this: proved, with controls measured (curve_program.h).
 KW_API double kw_program_max_error(const kw_program* program);
 /// The range that a coordinate never leaves.
 KW_API double kw_program_low(const kw_program* program, int32_t coordinate);

@@ -46,6 +46,30 @@ TEST(CJoinProgram, StartsAsTheLibraryDoes) {
   EXPECT_EQ(kw_join_program_basis(nullptr), nullptr);
 }
 
+TEST(CJoinProgram, BasesAre0FromTheirEndOnButForDegree1InTheLastSpan) {
+  for (const int degree : {1, 2, 3, 5}) {
+    for (const int spans : {1, 2, 4}) {
+      for (const bool in_last_span : {false, true}) {
+        curves::CurveSpec spec{.name = "zigzag", .degree = degree};
+        for (int i = 0; i < degree + spans; ++i) spec.points.push_back(i % 2);
+        const Curve curve = curve_of(spec);
+        const double u_join = in_last_span ? 1 - 0.5 / spans : 0.1 / spans;
+        const Join join = made<Join>(kw_compile_join, curve.get(), u_join, nullptr);
+        const double end = kw_join_program_u_basis_end(join.get());
+        const kw_program* basis = kw_join_program_basis(join.get());
+        const bool is_exception = degree == 1 && (in_last_span || spans == 1);
+        EXPECT_EQ(kw_program_at(basis, end, 0, nullptr, 0), 0);
+        EXPECT_EQ(kw_program_at(basis, end, 1, nullptr, 0), is_exception ? 1 : 0)
+            << "degree " << degree << ", " << spans << " spans";
+        if (degree == 1) {
+          EXPECT_FALSE(kw_join_program_moves_p1(join.get()));
+          EXPECT_EQ(kw_join_program_start(join.get(), 0.25, 40).dp1, 0);
+        }
+      }
+    }
+  }
+}
+
 TEST(CFastProgram, RendersTheSamplesOfTheLibrary) {
   const Curve curve = curve_of(bell());
   const Program program = made<Program>(kw_compile_function, curve.get(), nullptr);

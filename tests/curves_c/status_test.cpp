@@ -73,6 +73,64 @@ TEST(CStatus, ANullPointerIsNamed) {
   made<Curve>(kw_curve_refine, curve.get(), (const double*)nullptr, size_t(0));
 }
 
+void expect_null(const Failure& failure, const std::string& name) {
+  EXPECT_EQ(failure.status, KW_NULL_ARGUMENT) << name;
+  EXPECT_EQ(failure.message, "argument '" + name + "' is NULL");
+}
+
+TEST(CStatus, ANullMemberOfASpecIsANullArgument) {
+  const double points[] = {0, 1};
+  kw_curve_spec spec = KW_CURVE_SPEC_INIT;
+  spec.points_count = 2;
+  expect_null(refused<kw_curve>(kw_curve_create, &spec), "spec->points");
+  spec.points = points;
+  spec.weights_count = 2;
+  expect_null(refused<kw_curve>(kw_curve_create, &spec), "spec->weights");
+  spec.weights = points;
+  spec.knots_count = 1;
+  expect_null(refused<kw_curve>(kw_curve_create, &spec), "spec->knots");
+  spec.knots = points;
+  spec.jumps_count = 1;
+  expect_null(refused<kw_curve>(kw_curve_create, &spec), "spec->jumps");
+
+  kw_surface_spec surface = KW_SURFACE_SPEC_INIT;
+  surface.points = points;
+  surface.points_count = 2;
+  surface.knots_v_count = 1;
+  expect_null(refused<kw_surface>(kw_surface_create, &surface), "spec->knots_v");
+  surface.knots_u_count = 1;
+  expect_null(refused<kw_surface>(kw_surface_create, &surface), "spec->knots_u");
+  surface.weights_count = 1;
+  expect_null(refused<kw_surface>(kw_surface_create, &surface), "spec->weights");
+  surface.points = nullptr;
+  expect_null(refused<kw_surface>(kw_surface_create, &surface), "spec->points");
+
+  const Curve curve = curve_of(bell());
+  kw_compile_options options = KW_COMPILE_OPTIONS_INIT;
+  options.controls_count = 1;
+  expect_null(refused<kw_program>(kw_compile_function, curve.get(), &options), "options->controls");
+  expect_null(refused<kw_join_program>(kw_compile_join, curve.get(), 0.5, &options),
+              "options->controls");
+}
+
+TEST(CStatus, ANullAmongCurvesIsANullArgument) {
+  const Curve curve = curve_of(bell());
+  const kw_curve* const curves[] = {curve.get(), nullptr};
+  kw_curve* out[] = {nullptr, nullptr};
+  kw_error* error = nullptr;
+  EXPECT_EQ(kw_curve_make_all_compatible(curves, 2, out, 2, &error), KW_NULL_ARGUMENT);
+  EXPECT_STREQ(kw_error_message(error), "argument 'curves[1]' is NULL");
+  kw_error_free(error);
+  const size_t sizes[] = {2};
+  const kw_curve* const* const rows = curves;
+  expect_null(
+      refused<kw_trim_region>(kw_trim_region_create, rows, size_t{2}, &sizes[0], size_t{1}, 1e-9),
+      "curves[1]");
+  const double* const evenly = nullptr;
+  expect_null(refused<kw_surface>(kw_surface_lofted, rows, size_t{2}, 1, evenly, size_t{0}),
+              "rows[1]");
+}
+
 TEST(CStatus, ErrorsMayBeLeftOutAndNullMayBeFreed) {
   kw_curve* curve = nullptr;
   kw_curve_spec spec = KW_CURVE_SPEC_INIT;

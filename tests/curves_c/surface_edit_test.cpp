@@ -99,10 +99,10 @@ TEST(CSurfaceEdit, FaultsMakeNothingAndSayWhy) {
             KW_PARAMETER_OUT_OF_RANGE);
   const double* const none = nullptr;
   EXPECT_EQ(refused<kw_surface>(kw_surface_refine, ours.get(), 0, none, size_t{1}).status,
-            KW_MALFORMED);
+            KW_NULL_ARGUMENT);
   kw_surface *low = nullptr, *high = nullptr;
   EXPECT_EQ(kw_surface_split(ours.get(), 0, 2, &low, &high, nullptr), KW_PARAMETER_OUT_OF_RANGE);
-  EXPECT_EQ(kw_surface_split(ours.get(), 0, 0.5, nullptr, &high, nullptr), KW_MALFORMED);
+  EXPECT_EQ(kw_surface_split(ours.get(), 0, 0.5, nullptr, &high, nullptr), KW_NULL_ARGUMENT);
   EXPECT_EQ(kw_surface_split(ours.get(), 0, 0.5, &low, &low, nullptr), KW_MALFORMED);
   const double knot = 0.5;
   const double* const one = &knot;
@@ -141,7 +141,7 @@ TEST(CSurfaceShapes, EachIsThatOfTheLibrary) {
               curves::coons(theirs({0, 1}), theirs({2, 5}), theirs({0, 2}), theirs({1, 5})));
   rows[1] = nullptr;
   EXPECT_EQ(refused<kw_surface>(kw_surface_lofted, rows, size_t{3}, 2, evenly, size_t{0}).message,
-            "curve 1 is NULL");
+            "argument 'rows[1]' is NULL");
 }
 
 }  // namespace

@@ -35,9 +35,10 @@ kw_status kw_curve_make_all_compatible(const kw_curve* const* curves, size_t cur
                if (out_count != curves_count) {
                  return report(error, KW_DIMENSION_MISMATCH, "as many go out as come in");
                }
-               auto all = curves_of(curves, curves_count);
-               if (!all) return report(error, std::move(all).error());
-               auto alike = curves::make_compatible(std::span<const curves::NurbsCurve>(*all));
+               const std::string absent = missing_among("curves", curves, curves_count);
+               if (!absent.empty()) return report(error, KW_NULL_ARGUMENT, absent);
+               const auto all = curves_of(curves, curves_count);
+               auto alike = curves::make_compatible(std::span<const curves::NurbsCurve>(all));
                if (!alike) return report(error, std::move(alike).error());
                std::vector<std::unique_ptr<kw_curve>> made;
                for (auto& curve : *alike) {

@@ -50,16 +50,16 @@ curves::Extrapolation extrapolation_of(kw_extrapolation mode) {
 }  // namespace
 
 kw_status kw_curve_create(const kw_curve_spec* spec, kw_curve** out, kw_error** error) {
-  return make_curve({{"spec", spec}}, out, error, [&]() -> Result<NurbsCurve> {
+  const kw_curve_spec& given = readable(spec);
+  const std::initializer_list<Needed> needed = {
+      {"spec", spec},
+      member("spec->points", given.points, given.points_count),
+      member("spec->weights", given.weights, given.weights_count),
+      member("spec->knots", given.knots, given.knots_count),
+      member("spec->jumps", given.jumps, given.jumps_count)};
+  return make_curve(needed, out, error, [&]() -> Result<NurbsCurve> {
     if (spec->struct_size != sizeof(kw_curve_spec)) {
       return fail(ErrorCode::unsupported_version, "begin the spec with KW_CURVE_SPEC_INIT");
-    }
-    const char* absent = missing({array("points", spec->points, spec->points_count),
-                                  array("weights", spec->weights, spec->weights_count),
-                                  array("knots", spec->knots, spec->knots_count),
-                                  array("jumps", spec->jumps, spec->jumps_count)});
-    if (absent != nullptr) {
-      return fail(ErrorCode::malformed, std::string("the spec's ") + absent + " are NULL");
     }
     constexpr size_t kMostPoints = KW_MAX_POINTS;
     for (const auto& fault :

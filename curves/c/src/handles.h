@@ -58,6 +58,16 @@ struct Needed {
 inline Needed array(const char* name, const void* pointer, size_t count) {
   return {name, count == 0 ? name : pointer, count};
 }
+/// The same for a member of a spec; how many elements it may have is not asked here.
+inline Needed member(const char* name, const void* pointer, size_t count) {
+  return {name, count == 0 ? name : pointer};
+}
+/// What the caller gave, or nothing where its members cannot be read: NULL, or of another size.
+template <class Spec>
+const Spec& readable(const Spec* given) noexcept {
+  static constexpr Spec kNothing{};
+  return given != nullptr && given->struct_size == sizeof(Spec) ? *given : kNothing;
+}
 /// The first with more elements of 8 bytes than memory can have, or null.
 const Needed* endless(std::initializer_list<Needed> needed) noexcept;
 /// Something of a curve that is counted: more than `most` is too_many_points.
@@ -191,8 +201,15 @@ char* new_text(std::string_view text);
 /// Numbers of the caller's own.
 kw_doubles new_doubles(std::span<const double> numbers);
 
-/// Copies of all, unless one is NULL.
-Result<std::vector<curves::NurbsCurve>> curves_of(const kw_curve* const* handles, size_t count);
+/// The first handle that is NULL, such as "curves[2]"; empty if none is.
+std::string missing_among(const char* name, const kw_curve* const* handles, size_t count);
+/// Copies of all; none is NULL.
+std::vector<curves::NurbsCurve> curves_of(const kw_curve* const* handles, size_t count);
+/// What compile options need: their controls, if any are announced.
+inline Needed needed_controls(const kw_compile_options* options) noexcept {
+  const kw_compile_options& given = readable(options);
+  return member("options->controls", given.controls, given.controls_count);
+}
 /// Defaults for NULL.
 Result<curves::CompileOptions> compile_options_of(const kw_compile_options* options);
 

@@ -23,7 +23,7 @@ kw_join_deltas deltas_of(const curves::JoinProgram::Deltas& deltas) {
 kw_status kw_compile_join(const kw_curve* curve, double u_join, const kw_compile_options* options,
                           kw_join_program** out, kw_error** error) {
   if (out != nullptr) *out = nullptr;
-  return run({{"curve", curve}, {"out", out}}, error, [&]() -> kw_status {
+  return run({{"curve", curve}, {"out", out}, needed_controls(options)}, error, [&]() -> kw_status {
     const auto asked = compile_options_of(options);
     if (!asked) return report(error, asked.error());
     return give(curves::compile_join(curve->curve, u_join, *asked), error,

@@ -29,9 +29,6 @@ Result<CompileOptions> c::compile_options_of(const kw_compile_options* options) 
   if (options->struct_size != sizeof(kw_compile_options)) {
     return fail(ErrorCode::unsupported_version, "begin the options with KW_COMPILE_OPTIONS_INIT");
   }
-  if (options->controls == nullptr && options->controls_count > 0) {
-    return fail(ErrorCode::malformed, "the options' controls are NULL");
-  }
   if (options->controls_count > size_t{curves::kMaxControls}) {
     return fail(ErrorCode::value_out_of_range,
                 std::to_string(options->controls_count) + " controls, at most " +
@@ -60,7 +57,7 @@ using Compiler = Result<CurveProgram> (*)(const curves::NurbsCurve&, const Compi
 kw_status compile_with(Compiler compiler, const kw_curve* curve, const kw_compile_options* options,
                        kw_program** out, kw_error** error) {
   if (out != nullptr) *out = nullptr;
-  return run({{"curve", curve}, {"out", out}}, error, [&]() -> kw_status {
+  return run({{"curve", curve}, {"out", out}, needed_controls(options)}, error, [&]() -> kw_status {
     const Result<CompileOptions> asked = compile_options_of(options);
     if (!asked) return report(error, asked.error());
     return give(compiler(curve->curve, *asked), error,

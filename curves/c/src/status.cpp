@@ -138,14 +138,16 @@ kw_doubles new_doubles(std::span<const double> numbers) {
   return {copy, numbers.size()};
 }
 
-Result<std::vector<curves::NurbsCurve>> curves_of(const kw_curve* const* handles, size_t count) {
-  std::vector<curves::NurbsCurve> curves;
+std::string missing_among(const char* name, const kw_curve* const* handles, size_t count) {
   for (size_t i = 0; i < count; ++i) {
-    if (handles[i] == nullptr) {
-      return fail(ErrorCode::malformed, "curve " + std::to_string(i) + " is NULL");
-    }
-    curves.push_back(handles[i]->curve);
+    if (handles[i] == nullptr) return std::string(name) + "[" + std::to_string(i) + "]";
   }
+  return {};
+}
+
+std::vector<curves::NurbsCurve> curves_of(const kw_curve* const* handles, size_t count) {
+  std::vector<curves::NurbsCurve> curves;
+  for (size_t i = 0; i < count; ++i) curves.push_back(handles[i]->curve);
   return curves;
 }
 

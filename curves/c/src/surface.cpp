@@ -14,13 +14,6 @@ Result<NurbsSurface> surface_of(const kw_surface_spec& spec) {
   if (spec.struct_size != sizeof(kw_surface_spec)) {
     return fail(ErrorCode::unsupported_version, "begin the spec with KW_SURFACE_SPEC_INIT");
   }
-  const char* absent = missing({array("points", spec.points, spec.points_count),
-                                array("weights", spec.weights, spec.weights_count),
-                                array("knots_u", spec.knots_u, spec.knots_u_count),
-                                array("knots_v", spec.knots_v, spec.knots_v_count)});
-  if (absent != nullptr) {
-    return fail(ErrorCode::malformed, std::string("the spec's ") + absent + " are NULL");
-  }
   constexpr size_t kMostPoints = KW_MAX_POINTS;
   for (const auto& fault :
        {count_fault("the spec's points_count", spec.points_count, kMostPoints * KW_MAX_DIM),
@@ -47,7 +40,14 @@ Result<NurbsSurface> surface_of(const kw_surface_spec& spec) {
 }  // namespace
 
 kw_status kw_surface_create(const kw_surface_spec* spec, kw_surface** out, kw_error** error) {
-  return make_surface({{"spec", spec}}, out, error, [&] { return surface_of(*spec); });
+  const kw_surface_spec& given = readable(spec);
+  const std::initializer_list<Needed> needed = {
+      {"spec", spec},
+      member("spec->points", given.points, given.points_count),
+      member("spec->weights", given.weights, given.weights_count),
+      member("spec->knots_u", given.knots_u, given.knots_u_count),
+      member("spec->knots_v", given.knots_v, given.knots_v_count)};
+  return make_surface(needed, out, error, [&] { return surface_of(*spec); });
 }
 kw_status kw_surface_copy(const kw_surface* surface, kw_surface** out, kw_error** error) {
   return make_surface({{"surface", surface}}, out, error,

@@ -12,14 +12,11 @@ using curves::NurbsSurface;
 
 namespace {
 
-/// `work` gets the direction, once it is one.
+/// `work` gets the direction, once it is one; `also` is needed besides the surface.
 template <class Work>
 kw_status edit(const kw_surface* surface, kw_direction direction, kw_surface** out,
-               kw_error** error, Work&& work, std::initializer_list<Needed> needed = {}) noexcept {
-  return make_surface({{"surface", surface}}, out, error, [&]() -> Result<NurbsSurface> {
-    if (const char* name = missing(needed)) {
-      return fail(ErrorCode::malformed, std::string(name) + " is NULL");
-    }
+               kw_error** error, Work&& work, Needed also = member("", nullptr, 0)) noexcept {
+  return make_surface({{"surface", surface}, also}, out, error, [&]() -> Result<NurbsSurface> {
     if (direction != KW_DIRECTION_U && direction != KW_DIRECTION_V) {
       return unknown_choice("the direction", direction, 2);
     }
@@ -44,13 +41,14 @@ kw_status kw_surface_insert_knot(const kw_surface* surface, kw_direction directi
 }
 kw_status kw_surface_refine(const kw_surface* surface, kw_direction direction, const double* knots,
                             size_t knots_count, kw_surface** out, kw_error** error) {
-  return edit(surface, direction, out, error,
-              [&](Direction along) -> Result<NurbsSurface> {
-                auto fault = count_fault("knots_count", knots_count, kMostKnots);
-                if (fault) return *std::move(fault);
-                return refine(surface->surface, along, numbers(knots, knots_count));
-              },
-              {array("knots", knots, knots_count)});
+  return edit(
+      surface, direction, out, error,
+      [&](Direction along) -> Result<NurbsSurface> {
+        auto fault = count_fault("knots_count", knots_count, kMostKnots);
+        if (fault) return *std::move(fault);
+        return refine(surface->surface, along, numbers(knots, knots_count));
+      },
+      member("knots", knots, knots_count));
 }
 kw_status kw_surface_elevate_degree(const kw_surface* surface, kw_direction direction,
                                     int32_t times, kw_surface** out, kw_error** error) {
@@ -67,14 +65,15 @@ kw_status kw_surface_split(const kw_surface* surface, kw_direction direction, do
   if (out_low != nullptr) *out_low = nullptr;
   std::unique_ptr<kw_surface> low;
   const kw_status status =
-      edit(surface, direction, out_high, error, [&](Direction along) -> Result<NurbsSurface> {
-        if (out_low == nullptr) return fail(ErrorCode::malformed, "out_low is NULL");
-        if (out_low == out_high) return one_place_for_two();
-        auto parts = split(surface->surface, along, at);
-        if (!parts) return std::move(parts).error();
-        low = std::make_unique<kw_surface>(kw_surface{std::move(parts->low)});
-        return std::move(parts->high);
-      });
+      edit(surface, direction, out_high, error,
+           [&](Direction along) -> Result<NurbsSurface> {
+             if (out_low == out_high) return one_place_for_two();
+             auto parts = split(surface->surface, along, at);
+             if (!parts) return std::move(parts).error();
+             low = std::make_unique<kw_surface>(kw_surface{std::move(parts->low)});
+             return std::move(parts->high);
+           },
+           {"out_low", out_low});
   if (status == KW_OK) *out_low = low.release();
   return status;
 }
@@ -117,13 +116,19 @@ kw_status kw_surface_ruled(const kw_curve* first, const kw_curve* second, kw_sur
 kw_status kw_surface_lofted(const kw_curve* const* rows, size_t rows_count, int32_t degree_v,
                             const double* positions, size_t positions_count, kw_surface** out,
                             kw_error** error) {
-  return make_surface(
-      {array("rows", rows, rows_count), array("positions", positions, positions_count)}, out, error,
-      [&]() -> Result<NurbsSurface> {
-        auto all = curves_of(rows, rows_count);
-        if (!all) return std::move(all).error();
-        return curves::lofted(*all, degree_v, numbers(positions, positions_count));
-      });
+  if (out != nullptr) *out = nullptr;
+  return run({array("rows", rows, rows_count),
+              array("positions", positions, positions_count),
+              {"out", out}},
+             error, [&]() -> kw_status {
+               const std::string absent = missing_among("rows", rows, rows_count);
+               if (!absent.empty()) return report(error, KW_NULL_ARGUMENT, absent);
+               return give(curves::lofted(curves_of(rows, rows_count), degree_v,
+                                          numbers(positions, positions_count)),
+                           error, [&](NurbsSurface&& surface) {
+                             *out = new kw_surface{std::move(surface)};
+                           });
+             });
 }
 kw_status kw_surface_revolved(const kw_curve* profile, double length_cycles, kw_surface** out,
                               kw_error** error) {

@@ -52,9 +52,9 @@ kw_status kw_trim_region_create(const kw_curve* const* curves, size_t curves_cou
               array("loop_sizes", loop_sizes, loop_count),
               {"out", out}},
              error, [&]() -> kw_status {
-               auto all = curves_of(curves, curves_count);
-               if (!all) return report(error, std::move(all).error());
-               auto loops = loops_of(std::move(*all), {loop_sizes, loop_count});
+               const std::string absent = missing_among("curves", curves, curves_count);
+               if (!absent.empty()) return report(error, KW_NULL_ARGUMENT, absent);
+               auto loops = loops_of(curves_of(curves, curves_count), {loop_sizes, loop_count});
                if (!loops) return report(error, std::move(loops).error());
                return give(TrimRegion::create(*loops, tolerance), error, [&](TrimRegion&& region) {
                  *out = new kw_trim_region{std::move(region)};

@@ -37,7 +37,7 @@ KW_API kw_status kw_curve_closest_point(const kw_curve* curve, const double* poi
 /// Whether a coordinate never decreases.
 KW_API kw_status kw_curve_is_non_decreasing(const kw_curve* curve, int32_t coordinate, bool* out,
                                             kw_error** error);
-/// [n]: the u where each control point pulls most.
+/// [kw_curve_point_count()], never wrapped: the u where each control point pulls most.
 KW_API kw_status kw_curve_greville_abscissae(const kw_curve* curve, kw_doubles* out,
                                              kw_error** error);
 

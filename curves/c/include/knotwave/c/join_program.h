@@ -20,7 +20,8 @@ KW_API void kw_join_program_free(kw_join_program* join);
 /// dim 2: basis0 and basis1. Borrowed.
 KW_API const kw_program* kw_join_program_basis(const kw_join_program* join);
 KW_API double kw_join_program_u_join(const kw_join_program* join);
-/// From here on both bases are 0.
+/// From here on both bases are 0. But a join of degree 1 in the last span has basis 1 = 1 at the
+/// end; it doesn't sound, as such a join never moves P1.
 KW_API double kw_join_program_u_basis_end(const kw_join_program* join);
 /// Whether a join can take a slope on; else it takes the value alone.
 KW_API bool kw_join_program_moves_p1(const kw_join_program* join);

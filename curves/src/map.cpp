@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "knotwave/base/document.h"
@@ -37,9 +38,15 @@ Result<void> check_range(Target target, const char* name, double x1, double x2) 
                                                      ".." + base::number_text(kMaxKnot));
     }
   }
-  if (x1 != x2) return {};
-  return fail(ErrorCode::empty_domain,
-              what + name + "1 and " + name + "2 are both " + base::number_text(x1));
+  if (x1 == x2) {
+    return fail(ErrorCode::empty_domain,
+                what + name + "1 and " + name + "2 are both " + base::number_text(x1));
+  }
+  if (std::abs(x2 - x1) >= kMinKnotStep) return {};
+  return fail(ErrorCode::value_out_of_range, what + name + "1 (" + base::number_text(x1) +
+                                                 ") and " + name + "2 (" + base::number_text(x2) +
+                                                 ") differ by less than " +
+                                                 base::number_text(kMinKnotStep));
 }
 
 Result<void> check_width(Target target, int width) {
@@ -47,6 +54,13 @@ Result<void> check_width(Target target, int width) {
   return fail(ErrorCode::dimension_mismatch,
               std::string("map of ") + to_string(target) + ": " + std::to_string(width) +
                   " coordinates, the target takes " + std::to_string(widest(target)) + " at most");
+}
+
+/// A slope by the map's own parameter as one by the common coordinate; beyond all doubles it is the
+/// largest with its sign.
+double rescaled(double slope, double scale) KNOTWAVE_RT {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  return std::clamp(slope * scale, -kLargest, kLargest);
 }
 
 /// Whether a map with key `a` is evaluated rather than one with key `b`.
@@ -211,7 +225,8 @@ void MapSet::evaluate_slopes(double u, MapValues& by_u) const KNOTWAVE_RT {
     by_u.width[t] = slot.key.width;
     if (!slot.program.is_periodic() && !slot.u.holds(u)) continue;
     for (int c = 0; c < slot.key.width; ++c) {
-      by_u.numbers[t][index_of(c)] = slot.program.slope_at_u(slot.u.at(u), c) * slot.u.scale;
+      by_u.numbers[t][index_of(c)] =
+          rescaled(slot.program.slope_at_u(slot.u.at(u), c), slot.u.scale);
     }
   }
 }
@@ -228,8 +243,8 @@ void MapSet::evaluate_slopes(double u, double v, MapValues& by_u,
     const bool moves_u = slot.program.is_periodic_u() || slot.u.holds(u);
     for (int c = 0; c < slot.key.width; ++c) {
       const auto slopes = slot.program.slopes_at(slot.u.at(u), slot.v.at(v), c);
-      if (moves_u) by_u.numbers[t][index_of(c)] = slopes.by_u * slot.u.scale;
-      if (slot.v.holds(v)) by_v.numbers[t][index_of(c)] = slopes.by_v * slot.v.scale;
+      if (moves_u) by_u.numbers[t][index_of(c)] = rescaled(slopes.by_u, slot.u.scale);
+      if (slot.v.holds(v)) by_v.numbers[t][index_of(c)] = rescaled(slopes.by_v, slot.v.scale);
     }
   }
 }

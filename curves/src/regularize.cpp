@@ -111,7 +111,7 @@ HandleLengths swapped(HandleLengths lengths) noexcept { return {lengths.b, lengt
 struct Cubic {
   std::span<double> p;
 
-  double x(int i) const { return p[static_cast<std::size_t>(2 * i)]; }
+  double& x(int i) const { return p[static_cast<std::size_t>(2 * i)]; }
   DoubleDouble step(int i) const { return DoubleDouble::difference(x(i + 1), x(i)); }
 
   /// By the Bernstein coefficients of x', right to 2^-100 of their products.
@@ -145,6 +145,10 @@ void repair(const Cubic& cubic, Regularization mode) {
   }
   cubic.scale_handle(1, 0, factors.a);
   cubic.scale_handle(2, 3, factors.b);
+  if (mode == Regularization::contain) {  // not by rounding either
+    cubic.x(1) = std::min(cubic.x(1), cubic.x(3));
+    cubic.x(2) = std::max(cubic.x(2), cubic.x(0));
+  }
   // Points are rounded, by up to an ulp of the largest x.
   double give = 0x1p-52;
   while (!cubic.is_monotone()) {
@@ -154,11 +158,7 @@ void repair(const Cubic& cubic, Regularization mode) {
   }
 }
 
-bool exceeds(const Cubic& cubic) {
-  if (!(cubic.x(0) < cubic.x(3))) return false;
-  const HandleLengths drawn = cubic.handles();
-  return drawn.a > 1 || drawn.b > 1;
-}
+bool exceeds(const Cubic& cubic) { return cubic.x(1) > cubic.x(3) || cubic.x(2) < cubic.x(0); }
 
 Result<void> check(const NurbsCurve& curve, const std::string& what) {
   if (curve.degree() != 3 || curve.is_rational()) {

@@ -24,6 +24,23 @@ struct Place {
 };
 Place mirrored(Place point, Place about) { return {2 * about.x - point.x, 2 * about.y - point.y}; }
 
+// Of a number that no double holds: whether it is too small for one, not too large.
+bool is_tiny(std::string_view number) {
+  const std::size_t mark = std::min(number.find_first_of("eE"), number.size());
+  const std::string_view digits = number.substr(0, mark);
+  std::string_view power = number.substr(std::min(mark + 1, number.size()));
+  if (power.starts_with('+')) power.remove_prefix(1);
+  const std::size_t first = digits.find_first_not_of("0.");
+  if (first == digits.npos) return true;
+  // The first digit that is not 0 stands for about 10^(place + exponent).
+  const auto place = static_cast<std::ptrdiff_t>(std::min(digits.find('.'), digits.size())) -
+                     static_cast<std::ptrdiff_t>(first);
+  int exponent = 0;
+  const auto read = std::from_chars(power.data(), power.data() + power.size(), exponent);
+  if (read.ec == std::errc::result_out_of_range) return power.starts_with('-');
+  return place + exponent < 0;
+}
+
 // The words of path data: commands, numbers and flags, which need no space between them.
 class Words {
  public:
@@ -48,16 +65,16 @@ class Words {
     const auto end = text_.data() + text_.size();
     const auto read = starts ? std::from_chars(text_.data() + from, end, value)
                              : std::from_chars_result{nullptr, std::errc::invalid_argument};
-    if (read.ec != std::errc()) {
+    const bool is_beyond_doubles = read.ec == std::errc::result_out_of_range;
+    if (read.ec != std::errc() && !is_beyond_doubles) {
       refuse(ErrorCode::syntax, "a number is expected" + found());
       return 0;
     }
+    const auto next = static_cast<std::size_t>(read.ptr - text_.data());
+    if (is_beyond_doubles) value = is_tiny(text_.substr(from, next - from)) ? 0 : HUGE_VAL;
     if (text_[at_] == '-') value = -value;
-    if (std::abs(value) > kMaxCoordinate) {
-      refuse(ErrorCode::coordinate_out_of_range,
-             base::number_text(value) + " is beyond " + base::number_text(kMaxCoordinate));
-    }
-    at_ = static_cast<std::size_t>(read.ptr - text_.data());
+    if (std::abs(value) > kMaxCoordinate) refuse_size(value, text_.substr(at_, next - at_));
+    at_ = next;
     argument_ = true;
     return value;
   }
@@ -85,6 +102,15 @@ class Words {
 
  private:
   static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+  void refuse_size(double value, std::string_view as_written) {
+    constexpr std::size_t kMost = 24;  // characters to show
+    const bool is_long = as_written.size() > kMost;
+    const std::string number =
+        std::isfinite(value) ? base::number_text(value)
+                             : std::string(as_written.substr(0, kMost)) + (is_long ? "..." : "");
+    refuse(ErrorCode::coordinate_out_of_range,
+           number + " is beyond " + base::number_text(kMaxCoordinate));
+  }
   void skip_space() {
     constexpr std::string_view kSpace = " \t\n\f\r";
     while (at_ < text_.size() && kSpace.find(text_[at_]) != kSpace.npos) ++at_;

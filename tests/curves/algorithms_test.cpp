@@ -40,6 +40,14 @@ TEST(Greville, PointsAtTheirAbscissaeMakeTheIdentity) {
   }
 }
 
+// docs/curves.md, Periodic curves.
+TEST(Greville, OfAPeriodicCurveAreNotWrapped) {
+  CurveSpec wave = spec_of(3, {0, 1, 0, -1});
+  wave.periodic = true;
+  EXPECT_THAT(greville_abscissae(made(wave)),
+              testing::ElementsAre(-0.25, 0, 0.25, 0.5, 0.75, 1, 1.25));
+}
+
 TEST(HullRange, IsTheRangeOfTheControlPoints) {
   const curves::HullRange range = hull_range(made(spec_of(2, {0, 3, -2, 1})));
   EXPECT_EQ(range.low, -2);

@@ -75,6 +75,22 @@ TEST(ValueRange, TurnsEndsAndJumpsCount) {
   EXPECT_EQ(flat.high.value, 0.1);
 }
 
+// Doubles are 1.2e-10 apart at u = 1e6, spans here 1e-6 wide: 2^-48 of one is no double.
+TEST(ValueRange, WhereDoublesAreCoarseUIsTheNextOneAndTheCurveThereMayMiss) {
+  std::vector<double> knots(4, 1e6);
+  for (int i = 1; i <= 3; ++i) knots.push_back(1e6 + 1e-6 * i);
+  knots.insert(knots.end(), 4, 1e6 + 4e-6);
+  const NurbsCurve curve = scalar(3, {0, 1e6, -1e6, 1e6, 0, -1e6, 0}, knots);
+  const auto high = value_range(curve).high;
+  double best_u = 0, best = -kInfinity;
+  for (double u = curve.u_min(); u <= curve.u_max(); u = std::nextafter(u, kInfinity)) {
+    if (at(curve, u) > best) best_u = u, best = at(curve, u);
+  }
+  EXPECT_GE(high.value, best);
+  EXPECT_LE(std::abs(high.u - best_u), ulp_of(1e6));
+  EXPECT_GT(high.value - at(curve, high.u), 1e-4) << "far more than half an ulp of 1e6";
+}
+
 // Chromium, ui/gfx/geometry/cubic_bezier_unittest.cc, Range.
 TEST(ValueRange, IsThatOfChromiumsEasings) {
   const auto y = [](double y1, double y2) { return value_range(scalar(3, {0, y1, y2, 1})); };

@@ -188,6 +188,86 @@ TEST(PowerBasis, BackAndForthMovesPointsByAtMost3ToThePUlp) {
   EXPECT_LE(worst, 1);
 }
 
+#if defined(__SIZEOF_FLOAT128__)
+using Wide = __float128;
+#else
+using Wide = long double;
+#endif
+
+/// The powers of `piece` at u, not rounded on the way.
+std::vector<double> value_of(const PowerSegment& piece, double u) {
+  const Wide t = (Wide(u) - Wide(piece.u0)) / (Wide(piece.u1) - Wide(piece.u0));
+  const auto sum_of = [&](const std::vector<double>& powers, std::size_t c, std::size_t step) {
+    Wide sum = 0;
+    for (std::size_t k = std::size_t(piece.degree) + 1; k-- > 0;) {
+      sum = sum * t + Wide(powers[k * step + c]);
+    }
+    return sum;
+  };
+  const Wide below = piece.denominator.empty() ? Wide(1) : sum_of(piece.denominator, 0, 1);
+  std::vector<double> value;
+  for (std::size_t c = 0; c < std::size_t(piece.dim); ++c) {
+    value.push_back(double(sum_of(piece.numerator, c, std::size_t(piece.dim)) / below));
+  }
+  return value;
+}
+
+double weight_ratio(const NurbsCurve& curve) {
+  const auto [least, most] = std::ranges::minmax(curve.weights());
+  return most / least;
+}
+
+TEST(PowerBasis, RoundingMovesTheCurveByAtMostWhatTheHeaderSays) {
+  Dice dice(support::test_seed());
+  double worst_plain = 0, worst_rational = 0;
+  int rational = 0;
+  for (int round = 0; round < support::test_count(2000); ++round) {
+    CurveSpec spec = random_spec(dice);
+    const double decades = dice.between(0, 6);
+    for (double& w : spec.weights) w = std::pow(10, dice.between(-decades, decades));
+    const NurbsCurve curve = made(spec);
+    const double ratio = weight_ratio(curve), power = std::pow(3.0, curve.degree());
+    if (power * ratio > 0x1p52) continue;
+    rational += curve.is_rational();
+    for (const PowerSegment& piece : to_power_basis(curve)) {
+      for (int look = 0; look < 8; ++look) {
+        const double near = std::ldexp(dice.unit(), -dice.below(50)) * (piece.u1 - piece.u0);
+        const double u = dice.one_in(2) ? piece.u1 - near : piece.u0 + near;
+        const Side side = u < piece.u1 ? Side::right : Side::left;
+        const double error = error_in_ulp(curve, u, side, value_of(piece, u));
+        if (curve.is_rational()) {
+          worst_rational = std::max(worst_rational, error / (4 * power * ratio));
+        } else {
+          worst_plain = std::max(worst_plain, error / power);
+        }
+      }
+    }
+  }
+  std::printf("worst %.3f and, with weights, %.3f of what is allowed\n", worst_plain,
+              worst_rational);
+  EXPECT_LE(worst_plain, 1);
+  EXPECT_LE(worst_rational, 1);
+  EXPECT_GT(rational, support::test_count(200));
+}
+
+TEST(PowerBasis, WithWeightsSquaresCancelAlready) {
+  CurveSpec spec;
+  spec.degree = 2;
+  spec.points = {0.3, -1, 1};
+  spec.weights = {1e6, 3e5, 1e-6};
+  const NurbsCurve curve = made(spec);
+  const PowerSegment piece = to_power_basis(curve).front();
+  double worst = 0;
+  for (int k = 0; k <= 2000; ++k) {
+    const double u = 1 - std::pow(10, -k / 125.0);
+    worst = std::max(worst, error_in_ulp(curve, u, Side::left, value_of(piece, u)));
+  }
+  EXPECT_GT(worst, 1e9) << "so 3^p = 9 ulp is no bound here";
+  EXPECT_LE(worst, 4 * 9 * weight_ratio(curve));
+  // docs/curves.md: a millionth of the range
+  EXPECT_GT(worst * 0x1p-52, 1e-6);
+}
+
 TEST(PowerBasis, ReportsWhatIsNoPiece) {
   const auto code = [](PowerSegment piece) {
     const auto result = from_power_basis(piece);

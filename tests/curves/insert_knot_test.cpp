@@ -130,6 +130,20 @@ TEST(InsertKnot, OutsideIsAnErrorWithBothNumbers) {
   EXPECT_FALSE(insert_knot(made(spec_of(2, {0, 1, -1, 2})), std::nan("")));
 }
 
+TEST(InsertKnot, OneTooNearAnotherOrOnePointTooManyIsRefused) {
+  const NurbsCurve curve = made(spec_of(2, {0, 1, -1, 2}));
+  const auto near = insert_knot(curve, 5e-324);
+  ASSERT_FALSE(near);
+  EXPECT_EQ(near.error().code, ErrorCode::value_out_of_range);
+  EXPECT_THAT(near.error().message, testing::HasSubstr("(0) by less than 1e-280"));
+  EXPECT_EQ(refine(curve, std::vector{0.25, 5e-324}).error().code, ErrorCode::value_out_of_range);
+  EXPECT_EQ(refine(curve, std::vector{1e-290, 0.25}).error().code, ErrorCode::value_out_of_range);
+  EXPECT_TRUE(insert_knot(curve, 1e-280));
+  const NurbsCurve full = made(spec_of(1, std::vector<double>(curves::kMaxPoints, 0.5)));
+  EXPECT_EQ(insert_knot(full, 0.5).error().code, ErrorCode::too_many_points);
+  EXPECT_EQ(refine(full, std::vector{0.5}).error().code, ErrorCode::too_many_points);
+}
+
 TEST(Refine, KeepsAnyCurveWithin4UlpOfTheLargestPointHoweverManyKnots) {
   Dice dice(support::test_seed());
   double worst = 0;

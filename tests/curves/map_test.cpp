@@ -141,6 +141,52 @@ TEST(Map, ErrorsAreThoseOfGlMap1) {
   EXPECT_EQ(over(0.5, 0.5).error().message, "map of amp: u1 and u2 are both 0.5");
 }
 
+TEST(Map, ARangeShorterThanKnotsMayBeIsRefused) {
+  MapSet maps;
+  for (const double tiny : {5e-324, 1e-310, 1e-281}) {
+    const auto curve = maps.define(Map1{Target::amp, 0, tiny, bezier({0, 1})});
+    EXPECT_EQ(code_of(curve), ErrorCode::value_out_of_range);
+    EXPECT_EQ(code_of(maps.define(Map1{Target::amp, tiny, 0, bezier({0, 1})})),
+              ErrorCode::value_out_of_range);
+    const auto surface = bilinear({0, 1, 2, 3});
+    EXPECT_EQ(code_of(maps.define(Map2{Target::amp, 0, tiny, 0, 1, surface})),
+              ErrorCode::value_out_of_range);
+    EXPECT_EQ(code_of(maps.define(Map2{Target::amp, 0, 1, 0, tiny, surface})),
+              ErrorCode::value_out_of_range);
+  }
+  EXPECT_EQ(maps.define(Map1{Target::amp, 0, 1e-310, bezier({0, 1})}).error().message,
+            "map of amp: u1 (0) and u2 (1e-310) differ by less than 1e-280");
+}
+
+TEST(Map, TheShortestRangeHasItsValuesAndSlopesThatAreNumbers) {
+  constexpr double kShortest = curves::kMinKnotStep;
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  MapSet maps;
+  enable(maps, Map1{Target::amp, 0, kShortest, bezier({0, 1})});
+  enable(maps, Map1{Target::pan, kShortest, 0, bezier({0, 0, 1, 0, 0}, 1, {1, 1, 4, 1, 1})});
+  CurveSpec steep;  // its slope is 1e286 by its own parameter, and 1e566 by the common one
+  steep.degree = 1;
+  steep.points = {-1e6, 0, 1e6, 0};
+  steep.knots = {0, 0, kShortest, 2 * kShortest, 1, 1};
+  enable(maps, Map1{Target::pitch, 0, kShortest, *NurbsCurve::create(steep)});
+  MapValues out;
+  maps.evaluate(0.5 * kShortest, out);
+  EXPECT_EQ(out.of(Target::amp)[0], 0.5);
+  EXPECT_NEAR(out.of(Target::pan)[0], 0.8, 1e-15);
+  maps.evaluate_slopes(0, out);
+  EXPECT_NEAR(out.of(Target::amp)[0] * kShortest, 1, 1e-15);
+  EXPECT_EQ(out.of(Target::pitch)[0], kLargest);
+  maps.evaluate_slopes(0.5 * kShortest, out);
+  EXPECT_NEAR(out.of(Target::pan)[0] * kShortest, 0, 1e-12);
+  EXPECT_NEAR(out.of(Target::pitch)[0] * kShortest, -1e6, 1e-6);
+
+  enable(maps, Map2{Target::cutoff, 0, kShortest, kShortest, 0, bilinear({0, 1, 2, 3})});
+  MapValues by_u, by_v;
+  maps.evaluate_slopes(0, kShortest, by_u, by_v);
+  EXPECT_NEAR(by_u.of(Target::cutoff)[0] * kShortest, 1, 1e-15);
+  EXPECT_NEAR(by_v.of(Target::cutoff)[0] * kShortest, -2, 1e-15);
+}
+
 TEST(Map, BezierSurfaceMapHasTheStridesOfGlMap2) {
   // Column by column: u steps by 2, v by 1.
   const std::vector<double> points = {0, 10, 1, 11, 2, 12};

@@ -188,6 +188,34 @@ TEST(Regularize, ContainAlsoCutsHandlesThatDoNoHarm) {
   EXPECT_DOUBLE_EQ(cut->points()[3], 0.4) << "y follows x";
 }
 
+TEST(Regularize, ContainLeavesNoHandleOutsideNotByABitAndIsDoneOnce) {
+  Dice dice(support::test_seed());
+  int cut = 0;
+  for (int round = 0; round < support::test_count(3000); ++round) {
+    const int segments = 1 + dice.below(3);
+    const double scale = std::pow(10, dice.between(-6, 4));
+    std::vector<double> points, knots(4, 0.0);
+    for (int i = 0; i <= 3 * segments; ++i) {
+      points.push_back(scale * (i % 3 == 0 ? i : i + dice.between(-3, 3)));
+      points.push_back(scale * dice.between(-1, 1));
+    }
+    for (int i = 1; i < segments; ++i) knots.insert(knots.end(), 3, i);
+    knots.insert(knots.end(), 4, segments);
+    const NurbsCurve drawn = timed(points, knots);
+    const auto kept = regularize(drawn, contain);
+    ASSERT_TRUE(kept) << kept.error().message;
+    cut += *kept != drawn;
+    for (const curves::BezierSegment& s : to_bezier(*kept)) {
+      EXPECT_GE(s.points[2], s.points[0]);
+      EXPECT_LE(s.points[2], s.points[6]);
+      EXPECT_GE(s.points[4], s.points[0]);
+      EXPECT_LE(s.points[4], s.points[6]);
+    }
+    EXPECT_EQ(*regularize(*kept, contain), *kept);
+  }
+  EXPECT_GT(cut, support::test_count(500));
+}
+
 TEST(Regularize, OnlyTheSegmentThatGoesBackChanges) {
   const NurbsCurve curve = timed({0, 0, 0.3, 1, 0.6, 1, 1, 0,  //
                                   3, 4, 0, 1, 2, 2},

@@ -171,7 +171,7 @@ TEST(SvgPath, NamesThePlaceOfAFault) {
       {"M 1 1 L nan 2", ErrorCode::syntax, 8},
       {"M 1 1 L 2 2 #", ErrorCode::syntax, 12},
       {"M 1 1 L 1e7 2", ErrorCode::coordinate_out_of_range, 8},
-      {"M 1 1 L 1e999 2", ErrorCode::syntax, 8},
+      {"M 1 1 L 1e999 2", ErrorCode::coordinate_out_of_range, 8},
       {"M 1 1 Z 5", ErrorCode::syntax, 8}};
   for (const auto& [d, code, offset] : faults) {
     const auto curves = curves_from_svg_path(d);
@@ -183,6 +183,31 @@ TEST(SvgPath, NamesThePlaceOfAFault) {
   EXPECT_EQ(curves_from_svg_path("M 1 1").error().code, ErrorCode::too_few_points);
   EXPECT_EQ(curves_from_svg_path("M 9e5 0 l 9e5 0").error().code,
             ErrorCode::coordinate_out_of_range);
+}
+
+TEST(SvgPath, NumbersThatNoDoubleHoldsAre0OrTooLarge) {
+  const std::string zeros(400, '0');
+  const std::string tiny[] = {"1e-400",           "-1E-400",
+                              "0.00001e-330",     ".5e-99999999999999999999",
+                              "0." + zeros + "1", "0." + zeros + "1e+3"};
+  for (const std::string& number : tiny) {
+    expect_points(read("M0 0L1 " + number).at(0), {0, 0, 1, 0});
+  }
+  EXPECT_EQ(read("M0 0L1 1" + zeros + "e-400").at(0), read("M0 0L1 1").at(0)) << "a plain 1";
+  const std::pair<std::string, std::string> large[] = {
+      {"1e400", "1e400"},
+      {"-2e+400", "-2e+400"},
+      {"1e99999999999999999999", "1e99999999999999999999"},
+      {"1" + zeros, "1" + zeros.substr(0, 23) + "..."},
+      {"1" + zeros + "e-1", "1" + zeros.substr(0, 23) + "..."},
+      {"1e7", "1e+07"}};
+  for (const auto& [number, shown] : large) {
+    const auto curves = curves_from_svg_path("M0 0L1 " + number);
+    ASSERT_FALSE(curves) << number;
+    EXPECT_EQ(curves.error().code, ErrorCode::coordinate_out_of_range);
+    EXPECT_EQ(curves.error().message, "path data: " + shown + " is beyond 1e+06");
+    EXPECT_EQ(curves.error().offset, 7);
+  }
 }
 
 TEST(SvgPath, StretchesADrawnLineOntoTheUnitSquare) {

@@ -23,9 +23,9 @@ struct BezierSegment {
   std::vector<double> weights;  ///< [degree+1]
 };
 
-/// Inserts knot u `times` times (Boehm; A5.1). [control] Errors: parameter_out_of_range (u not
-/// inside the domain, ends excluded unless the curve is unclamped there), knot_multiplicity (the
-/// result would exceed p). A periodic curve stays periodic.
+/// Inserts knot u `times` times (Boehm; A5.1); periodic stays periodic. [control] Errors:
+/// parameter_out_of_range (not inside the domain; an end only if unclamped), knot_multiplicity
+/// (more than p), too_many_points, value_out_of_range (nearer another knot than kMinKnotStep).
 Result<NurbsCurve> insert_knot(const NurbsCurve& curve, double u, int times = 1);
 
 /// Inserts all of `knots`, in any order, repeated ones as often as they are there; rounded once,
@@ -58,7 +58,7 @@ void de_boor(const NurbsCurve& curve, double u, std::span<double> out) noexcept;
 /// degree_out_of_range, too_many_points, value_out_of_range (times < 0).
 Result<NurbsCurve> elevate_degree(const NurbsCurve& curve, int times = 1);
 
-/// Greville abscissae [n]: the u where each control point pulls most. [control]
+/// Greville abscissae [point_count()], never wrapped: the u where each point pulls most. [control]
 std::vector<double> greville_abscissae(const NurbsCurve& curve);
 
 /// Least and greatest control point in one coordinate: the curve never leaves them. [control]

@@ -18,9 +18,9 @@ struct ValueRange {
   Extremum low;
   Extremum high;
 };
-/// Least and greatest value of a coordinate, within half an ulp of max|P|, and where: the first
-/// place where several are equal. At a smooth turn u is right to 2^-48 of its span where the curve
-/// bends there; a flatter turn is as hard to place as to hear. Never outside hull_range().
+/// Least and greatest value of a coordinate, within half an ulp of max|P|, never outside
+/// hull_range(), and where: the first of several. At a smooth turn u is right to 2^-48 of its span,
+/// or to the next double (so C(u) may miss), if it bends; flatter ones are as hard to place.
 ValueRange value_range(const NurbsCurve& curve, int coordinate = 0);
 
 /// Every u, in order, where the coordinate is `value`, within 4 ulp of the largest |u| of a place

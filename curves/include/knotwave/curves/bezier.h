@@ -31,9 +31,9 @@ struct PowerSegment {
   std::vector<double> denominator;  ///< [degree+1]; empty = 1
 };
 
-/// Powers of each span of positive length (The NURBS Book A6.1, in double-double, each coefficient
-/// rounded once). [control] Powers up to the 3rd are as good as points; beyond, their sums cancel
-/// and their rounding alone moves the curve by up to 3^p ulp of max|P|.
+/// Powers of each span of positive length (A6.1, in double-double), each rounded once: that alone
+/// moves a curve without weights by up to 3^p ulp of max|P|, with weights by up to 4 * 3^p r ulp, r
+/// = largest / smallest; where 3^p r > 2^52 the denominator may come out 0 or below. [control]
 std::vector<PowerSegment> to_power_basis(const NurbsCurve& curve);
 
 /// Bézier form of one piece in powers (A6.2, in double-double). [control] Errors:

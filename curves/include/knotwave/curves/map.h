@@ -122,10 +122,10 @@ class MapSet {
   MapSet();  ///< no maps, current values 0
 
   /// Compiles and keeps a map in place of the one with the same key; it is disabled until enabled.
-  /// [control] Errors: empty_domain (u1 == u2), not_finite, value_out_of_range (beyond kMaxKnot,
-  /// or the target is none),
-  /// dimension_mismatch (the target takes fewer coordinates), those of compile_parametric or
-  /// compile_surface. The set is then as before.
+  /// [control] Errors: empty_domain (u1 == u2), not_finite, value_out_of_range (beyond kMaxKnot, or
+  /// nearer each other than kMinKnotStep, or the target is none), dimension_mismatch (the target
+  /// takes fewer coordinates), those of compile_parametric or compile_surface. The set is then as
+  /// before.
   Result<MapKey> define(Map1 map);
   Result<MapKey> define(Map2 map);
 
@@ -143,7 +143,7 @@ class MapSet {
   void evaluate(double u, MapValues& out) const KNOTWAVE_RT;
   void evaluate(double u, double v, MapValues& out) const KNOTWAVE_RT;
   /// Derivatives by the common coordinates instead of values, right-hand (left-hand at the end); 0
-  /// where a target is not evaluated or held. [audio]
+  /// where a target is not evaluated or held. Beyond all doubles: the largest. [audio]
   void evaluate_slopes(double u, MapValues& by_u) const KNOTWAVE_RT;
   void evaluate_slopes(double u, double v, MapValues& by_u, MapValues& by_v) const KNOTWAVE_RT;
 

@@ -39,9 +39,9 @@ HandleLengths regularize_handles(HandleLengths lengths, Regularization mode,
 /// A curve with nothing to repair is returned as it is; else the segments that are left alone keep
 /// the Bézier points of to_bezier(), inner knots have multiplicity 3 (4 at a jump, whose sides are
 /// kept), and an unclamped curve becomes clamped. The Bézier points of the result never let x go
-/// back, not by rounding either. Errors: unsupported (degree other than 3, rational),
-/// dimension_mismatch (not 2 coordinates), not_a_function (a segment that ends before it begins, a
-/// jump back, or mode none on a curve that goes back), too_many_points.
+/// back, nor leave the segment after contain, not by rounding either. Errors: unsupported (degree
+/// other than 3, rational), dimension_mismatch (not 2 coordinates), not_a_function (a segment that
+/// ends before it begins, a jump back, or mode none on a curve that goes back), too_many_points.
 Result<NurbsCurve> regularize(const NurbsCurve& curve, Regularization mode);
 
 }  // namespace knotwave::curves

@@ -172,7 +172,7 @@ TEST(Map, TheShortestRangeHasItsValuesAndSlopesThatAreNumbers) {
   MapValues out;
   maps.evaluate(0.5 * kShortest, out);
   EXPECT_EQ(out.of(Target::amp)[0], 0.5);
-  EXPECT_NEAR(out.of(Target::pan)[0], 0.8, 1e-15);
+  EXPECT_NEAR(out.of(Target::pan)[0], 12 / 17.0, 1e-15);
   maps.evaluate_slopes(0, out);
   EXPECT_NEAR(out.of(Target::amp)[0] * kShortest, 1, 1e-15);
   EXPECT_EQ(out.of(Target::pitch)[0], kLargest);

@@ -51,7 +51,8 @@ def test_masked_values_are_refused(bell):
 
 
 @pytest.mark.parametrize("lossy", [[2**53 + 1], np.array([-(2**53) - 1]), np.array([2**64 - 1], np.uint64),
-                                   [2**70 + 1], [Fraction(1, 3)]])
+                                   [2**70 + 1], [Fraction(1, 3)], [10**400], [0.5, -(10**400)],
+                                   [Fraction(10**400, 3)]])
 def test_numbers_that_no_double_holds_are_refused(bell, lossy):
     with pytest.raises(kw.Error, match="no double holds") as caught:
         bell(lossy)

@@ -41,6 +41,21 @@ bool are_numbers(const py::array& objects) {
   return true;
 }
 
+Error no_double_holds(const py::array& given, const std::string& what_helps) {
+  return fail(ErrorCode::value_out_of_range,
+              "an array of " + std::string(py::str(given.dtype())) +
+                  " has numbers that no double holds: " + what_helps);
+}
+
+Array doubles_of(const py::array& given) {
+  try {
+    return Array(Array::Base(numpy("asarray")(given, "float64", "C")));
+  } catch (const py::error_already_set& fault) {
+    if (!fault.matches(PyExc_OverflowError)) throw;
+    throw Fault{no_double_holds(given, "the largest is 1.8e308")};
+  }
+}
+
 }  // namespace
 
 Array array_of(py::handle given) {
@@ -63,11 +78,9 @@ Array array_of(py::handle given) {
   if (!is_number && !(kind == 'O' && are_numbers(all))) {
     throw py::type_error("no numbers: " + std::string(py::str(py::repr(given))).substr(0, 80));
   }
-  const Array doubles(Array::Base(numpy("asarray")(all, "float64", "C")));
+  Array doubles = doubles_of(all);
   if (!is_without_loss(all, doubles)) {
-    throw Fault{fail(ErrorCode::value_out_of_range,
-                     "an array of " + std::string(py::str(all.dtype())) +
-                         " has numbers that no double holds: round them with .astype(float)")};
+    throw Fault{no_double_holds(all, "round them with .astype(float)")};
   }
   return doubles;
 }

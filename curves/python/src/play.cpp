@@ -29,7 +29,10 @@ void add_join(py::module_& module) {
                           "dp0 * basis(u, 0) + dp1 * basis(u, 1).")
       .def_readonly("basis", &JoinProgram::basis, "A Program of two coordinates.")
       .def_readonly("u_join", &JoinProgram::u_join)
-      .def_readonly("u_basis_end", &JoinProgram::u_basis_end, "From here on both bases are 0.")
+      .def_readonly(
+          "u_basis_end", &JoinProgram::u_basis_end,
+          "From here on both bases are 0. But a join of degree 1 in the last span has basis 1 = 1\n"
+          "at the end; it doesn't sound, as such a join never moves P1.")
       .def_readonly("moves_p1", &JoinProgram::moves_p1, "Whether a join takes a slope on.")
       .def(
           "start",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "command_line/json.h"
 
+#include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -54,6 +56,12 @@ std::string json_string(std::string_view text) {
     text.remove_prefix(size == 0 ? 1 : size);
   }
   return out + "\"";
+}
+
+std::string json_number(double value) {
+  if (!std::isfinite(value)) return "null";
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 17).ptr};
 }
 
 }  // namespace knotwave::command_line

@@ -62,6 +62,12 @@ class HelpLayout : public CLI::Formatter {
   std::string make_option_desc(const CLI::Option* option) const override {
     return wrapped(CLI::Formatter::make_option_desc(option));
   }
+  /// Where two files are taken, both are needed.
+  std::string make_option_usage(const CLI::Option* option) const override {
+    if (option->get_expected_max() != 2) return CLI::Formatter::make_option_usage(option);
+    const std::string name = make_option_name(option, true);
+    return name + " " + name;
+  }
 };
 
 template <typename Number>

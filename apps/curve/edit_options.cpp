@@ -40,8 +40,9 @@ constexpr const char* kFitExample =
     "  knotwave-curve fit fader.csv --within -60 --name fader -o fader.toml\n"
     "  knotwave-curve fit cycle.wav --points 24 -o cycle.toml\n"
     "A row of a table is a time and 1 to 4 values, or one value; a first row of\n"
-    "words and lines that begin with # are skipped. Of a sound, u is seconds and\n"
-    "channels are coordinates. --within holds between the data too.";
+    "words and lines that begin with # are skipped. What eval prints of a curve is\n"
+    "such a table; leave out --derivatives. Of a sound, u is seconds and channels\n"
+    "are coordinates. --within holds between the data too.";
 constexpr const char* kImportExample =
     "Examples:\n"
     "  knotwave-curve import drawing.svg -o drawn.toml\n"

@@ -11,6 +11,7 @@
 namespace knotwave::curve_app {
 namespace {
 
+using command_line::json_number;
 using curves::NurbsCurve;
 using curves::NurbsSurface;
 
@@ -75,6 +76,14 @@ Result<std::vector<Row>> rows_of(const NurbsSurface& surface, const CurveOptions
   return rows;
 }
 
+/// 17 significant digits: reads back as the same double.
+std::string digits17(double value) {
+  char text[40];
+  const auto end =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::general, 17).ptr;
+  return {text, end};
+}
+
 std::string table_of(const std::vector<Row>& rows) {
   std::string text;
   for (const Row& row : rows) {
@@ -89,12 +98,12 @@ std::string table_of(const std::vector<Row>& rows) {
 std::string json_of(const std::vector<Row>& rows, const std::string& name, int dim) {
   std::string text = "{\"name\": " + command_line::json_string(name) + ", \"rows\": [\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    text += "  {\"u\": " + digits17(rows[i].at.u);
-    if (rows[i].at.v) text += ", \"v\": " + digits17(*rows[i].at.v);
+    text += "  {\"u\": " + json_number(rows[i].at.u);
+    if (rows[i].at.v) text += ", \"v\": " + json_number(*rows[i].at.v);
     const auto list = [&](std::size_t first) {
       std::string numbers = "[";
       for (int c = 0; c < dim; ++c) {
-        numbers += (c == 0 ? "" : ", ") + digits17(rows[i].numbers[first + std::size_t(c)]);
+        numbers += (c == 0 ? "" : ", ") + json_number(rows[i].numbers[first + std::size_t(c)]);
       }
       return numbers + "]";
     };
@@ -110,13 +119,6 @@ std::string json_of(const std::vector<Row>& rows, const std::string& name, int d
 }
 
 }  // namespace
-
-std::string digits17(double value) {
-  char text[40];
-  const auto end =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::general, 17).ptr;
-  return {text, end};
-}
 
 Result<std::string> eval_text(const CurveOptions& options) {
   const auto item = read_item(options.files.front());

@@ -12,6 +12,7 @@ namespace knotwave::curve_app {
 namespace {
 
 using base::number_text;
+using command_line::json_number;
 using curves::NurbsCurve;
 using curves::NurbsSurface;
 
@@ -24,7 +25,7 @@ struct Fact {
 using Facts = std::vector<Fact>;
 
 Fact number_fact(const std::string& word, double value) {
-  return {word, number_text(value), digits17(value)};
+  return {word, number_text(value), json_number(value)};
 }
 Fact text_fact(const std::string& word, const std::string& text) {
   return {word, text, command_line::json_string(text)};
@@ -34,7 +35,7 @@ Fact claim_fact(const std::string& word, bool is) {
 }
 Fact range_fact(const std::string& word, double low, double high) {
   return {word, number_text(low) + " .. " + number_text(high),
-          "[" + digits17(low) + ", " + digits17(high) + "]"};
+          "[" + json_number(low) + ", " + json_number(high) + "]"};
 }
 
 /// "0 x4, 0.5, 1 x4": every knot of the file with how often it is there.
@@ -47,7 +48,7 @@ Fact knots_fact(const std::string& word, std::span<const double> knots) {
     if (times > 1) text += " x" + std::to_string(times);
     i = static_cast<std::size_t>(end);
   }
-  for (const double knot : knots) json += (json.empty() ? "" : ", ") + digits17(knot);
+  for (const double knot : knots) json += (json.empty() ? "" : ", ") + json_number(knot);
   return {word, text, "[" + json + "]"};
 }
 

@@ -32,7 +32,4 @@ Result<Made> fitted(const CurveOptions& options);
 Result<Made> imported(const CurveOptions& options);
 Result<Made> exported(const CurveOptions& options);
 
-/// 17 significant digits: reads back as the same double.
-std::string digits17(double value);
-
 }  // namespace knotwave::curve_app

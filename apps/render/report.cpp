@@ -79,7 +79,7 @@ std::string report_json(const RenderReport& r) {
   for (const auto& stem : r.stems) stems.push_back(json_stem(stem));
   JsonObject object(0);
   object.add("path", json_string(r.path));
-  object.add("seconds", fixed(r.seconds(), 6));
+  object.add("seconds", json_number(r.seconds(), 6));
   object.add("frames", std::to_string(r.frames));
   object.add("rate_hz", std::to_string(r.rate_hz));
   object.add("channels", std::to_string(r.channels));

@@ -200,6 +200,47 @@ TEST_F(CurveApp, JsonIsReadByAnotherReader) {
   EXPECT_EQ(read.exit_code, 0) << read.err;
 }
 
+// A slope there is beyond all doubles, and JSON has no word for that: it is the largest double.
+TEST_F(CurveApp, JsonOfTheSteepestShapesIsReadByAStrictReader) {
+  const std::string steep = folder_.file("steep.toml");
+  ASSERT_TRUE(base::write_file(steep, R"(format = 1
+kind = "curve"
+[curves.line]
+degree = 1
+points = [-1e6, 1e6, 0]
+knots = [0, 0, 1e-280, 1, 1]
+[curves.bell]
+degree = 2
+points = [0, 1e6, -1e6, 0]
+weights = [1e-6, 1e6, 1e-6, 1e6]
+knots = [0, 0, 0, 1e-280, 1, 1, 1]
+[surfaces.cliff]
+degree_u = 2
+degree_v = 1
+points = [[0, 1e6, -1e6, 0], [1e6, 0, 0, -1e6]]
+weights = [[1e-6, 1e6, 1e-6, 1e6], [1, 1, 1e-6, 1]]
+knots_u = [0, 0, 0, 1e-280, 1, 1, 1]
+knots_v = [0, 0, 1e-280, 1e-280]
+)"));
+  const std::string reader =
+      "import json, subprocess, sys\n"
+      "def refuse(word): raise ValueError(word + ' is no JSON')\n"
+      "def numbers(x):\n"
+      "  for y in x: yield from numbers(y) if isinstance(y, list) else [y]\n"
+      "for name, at, order in (('line', '0,5e-281,1', 15), ('bell', '0,5e-281,1e-280,1', 15),\n"
+      "                        ('cliff', '0:0,5e-281:5e-281,1:1e-280', 15)):\n"
+      "  d = json.loads(subprocess.check_output([sys.argv[1], 'eval', sys.argv[2] + '#' + name,\n"
+      "    '--at', at, '--derivatives', str(order), '--json']), parse_constant=refuse)\n"
+      "  for row in d['rows']:\n"
+      "    for x in numbers(row['value'] + row['derivatives']):\n"
+      "      assert abs(x) < float('inf'), row\n"
+      "json.loads(subprocess.check_output([sys.argv[1], 'info', sys.argv[2], '--json']),\n"
+      "           parse_constant=refuse)\n";
+  const ProgramRun read = support::run_program(
+      {"/usr/bin/python3", "-c", reader, KNOTWAVE_BIN_DIR "/knotwave-curve", steep});
+  EXPECT_EQ(read.exit_code, 0) << read.err;
+}
+
 TEST_F(CurveApp, InfoTellsWhatACurveIs) {
   const std::string arc = run({"info", file_ + "#arc"}).out;
   EXPECT_THAT(arc, HasSubstr("degree         2\n"));
@@ -211,7 +252,7 @@ TEST_F(CurveApp, InfoTellsWhatACurveIs) {
   EXPECT_THAT(run({"info", file_ + "#wave"}).out, HasSubstr("smoothness   C2\n"));
 }
 
-// docs/curves.md: the first point of a periodic cubic pulls one span before the seam.
+// docs/curves.md, Periodic curves: the first point of a cubic pulls one span before the seam.
 TEST_F(CurveApp, APeriodicCubicIsHighestWhereItsHighestPointPulls) {
   const auto wave = *curves::parse_curves(kCurves, "text")->find_curve("wave");
   EXPECT_EQ(greville_abscissae(wave)[0], -0.25);

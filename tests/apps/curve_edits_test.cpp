@@ -23,6 +23,7 @@ using curves::NurbsCurve;
 using support::ProgramRun;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr const char* kShapes = R"(format = 1
@@ -253,6 +254,11 @@ TEST_F(CurveEdits, MorphEndsEqualItsInputsAndItsMiddleIsTheirMean) {
     half.evaluate(i / 100.0, curves::Side::left, {&mean, 1});
     EXPECT_NEAR(mean, (a + b) / 2, 1e-15);
   }
+}
+
+TEST_F(CurveEdits, TheHelpOfMorphShowsThatTwoFilesAreNeeded) {
+  EXPECT_THAT(run({"morph", "--help"}).out, HasSubstr(" FILE FILE\n"));
+  EXPECT_THAT(run({"morph", "--help"}).out, Not(HasSubstr("FILE(")));
 }
 
 TEST_F(CurveEdits, WithoutAFileTheCurveGoesToStandardOutputAndTheReportBeside) {

@@ -118,7 +118,7 @@ TEST_F(CurveExchange, TablesAreReadAsPeopleWriteThem) {
   EXPECT_THAT(points("7\n# a note\n9\n"), ElementsAre(7, 9));
 }
 
-// What eval prints, fit reads.
+// docs/curves.md, From the command line: of a curve and without derivatives.
 TEST_F(CurveExchange, ATableOfEvalIsACurveAgain) {
   const std::string decay = KNOTWAVE_SOURCE_DIR "/examples/curves/decay.toml#decay60";
   const std::string table = write("d.tsv", run({"eval", decay, "--grid", "200"}).out);
@@ -128,6 +128,20 @@ TEST_F(CurveExchange, ATableOfEvalIsACurveAgain) {
   for (int i = 0; i <= 200; ++i) {
     EXPECT_NEAR(value_at(fit, i / 200.0), value_at(whole, i / 200.0), 1e-3 + 1e-12);
   }
+}
+
+TEST_F(CurveExchange, ATableOfEvalWithDerivativesIsAnotherCurveOrRefused) {
+  const std::string curve = write("orbit.toml",
+                                  "format = 1\nkind = \"curve\"\n[curves.orbit]\n"
+                                  "points = [[0, 0], [1, 2], [2, -1], [3, 0]]\n");
+  const auto table = [&](const char* order) {
+    return write("t.tsv", run({"eval", curve, "--grid", "8", "--derivatives", order}).out);
+  };
+  EXPECT_EQ(made({"fit", table("0")}).curves.front().dim(), 2);
+  EXPECT_EQ(made({"fit", table("1")}).curves.front().dim(), 4) << "a column is a coordinate";
+  const std::string wide = table("2");
+  expect_failure({"fit", wide}, wide + ":1: error: 7 columns; a time and 1 to 4 values are read");
+  EXPECT_THAT(run({"fit", "--help"}).out, HasSubstr("leave out --derivatives"));
 }
 
 TEST_F(CurveExchange, ASoundIsFittedOverSeconds) {

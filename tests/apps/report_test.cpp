@@ -6,12 +6,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "command_line/json.h"
 #include "progress.h"
 
 namespace knotwave::render {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 RenderReport example() {
   RenderReport report;
@@ -45,6 +47,21 @@ TEST(RenderReport, SilenceIsMinusInfinityAndNullInJson) {
   report.peak_dbfs = report.rms_dbfs = -std::numeric_limits<double>::infinity();
   EXPECT_THAT(report_line(report), HasSubstr("peak -inf dBFS, rms -inf dBFS"));
   EXPECT_THAT(report_json(report), HasSubstr("\"peak_dbfs\": null"));
+}
+
+TEST(JsonNumber, HasNoInfinityAndNoNan) {
+  using Limits = std::numeric_limits<double>;
+  for (const double none :
+       {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN(), -Limits::quiet_NaN()}) {
+    EXPECT_EQ(command_line::json_number(none), "null");
+    RenderReport report = example();
+    report.peak_dbfs = report.rms_dbfs = report.realtime_factor = none;
+    EXPECT_THAT(report_json(report), Not(HasSubstr("inf")));
+    EXPECT_THAT(report_json(report), Not(HasSubstr("nan")));
+  }
+  EXPECT_EQ(command_line::json_number(0.1), "0.10000000000000001");
+  EXPECT_EQ(command_line::json_number(-Limits::max()), "-1.7976931348623157e+308");
+  EXPECT_EQ(command_line::json_number(Limits::denorm_min()), "4.9406564584124654e-324");
 }
 
 TEST(RenderReport, JsonHasItsKeysInOrder) {

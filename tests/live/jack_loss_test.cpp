@@ -51,7 +51,8 @@ class JackLossTest : public ::testing::Test {
 TEST_F(JackLossTest, AKilledServerIsNoticedLeftAndFoundAgain) {
   for (int round = 0; round < 3; ++round) {
     server_.kill();
-    EXPECT_LT(seconds_until([&] { return stream_->status().state == State::lost; }, 5), kAtOnceSeconds);
+    EXPECT_LT(seconds_until([&] { return stream_->status().state == State::lost; }, 5),
+              kAtOnceSeconds);
     EXPECT_THAT(stream_->status().reason, HasSubstr("the JACK server has gone"));
     EXPECT_EQ(stream_->status().state, State::lost);  // and stays so
     EXPECT_FALSE(stream_->start());

@@ -19,9 +19,11 @@ JackServer::JackServer(int block_frames, int rate_hz)
   launch();
 }
 
+// JACK's registry has room for 8 servers of one machine, and one that was killed stays in it until
+// one of its name ends well.
 JackServer::~JackServer() {
+  if (was_killed_ && !runs_) launch();
   program_.reset();
-  // What a server leaves behind that was killed.
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", ignored)) {
     if (entry.path().filename().string().find(name_) != std::string::npos) {
@@ -47,6 +49,7 @@ void JackServer::launch() {
 void JackServer::kill() {
   program_->end(SIGKILL);
   runs_ = false;
+  was_killed_ = true;
 }
 
 void JackServer::pause() { program_->signal(SIGSTOP); }

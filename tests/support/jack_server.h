@@ -38,7 +38,7 @@ class JackServer {
   SetVariable found_by_, not_started_;
   ScratchFolder folder_;
   std::unique_ptr<BackgroundProgram> program_;
-  bool runs_ = false;
+  bool runs_ = false, was_killed_ = false;
 };
 
 /// While it lives, no JACK server is found.

@@ -65,8 +65,10 @@ Result<CurveProgram> compile_polynomial(const NurbsCurve& curve,
 /// and no point leaves the hull. docs/compile.md, Joins.
 struct JoinProgram {
   double u_join = 0;
-  CurveProgram basis;        ///< dim 2: basis0, basis1, over [u_join, u_end]
-  double u_basis_end = 0;    ///< from here on both are 0
+  CurveProgram basis;  ///< dim 2: basis0, basis1, over [u_join, u_end]
+  /// From here on both are 0. Of degree 1 in the last span basis 1 is 1 at the end, but P1 is never
+  /// moved there.
+  double u_basis_end = 0;
   double p0 = 0, p1 = 0;     ///< first two control points of the section
   double slope_factor = 1;   ///< slope at u_join by u = slope_factor * (p1 - p0); 0: see moves_p1
   double low = 0, high = 1;  ///< hull that p1 is limited to

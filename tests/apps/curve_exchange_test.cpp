@@ -133,13 +133,16 @@ TEST_F(CurveExchange, ATableOfEvalIsACurveAgain) {
 TEST_F(CurveExchange, ATableOfEvalWithDerivativesIsAnotherCurveOrRefused) {
   const std::string curve = write("orbit.toml",
                                   "format = 1\nkind = \"curve\"\n[curves.orbit]\n"
-                                  "points = [[0, 0], [1, 2], [2, -1], [3, 0]]\n");
-  const auto table = [&](const char* order) {
-    return write("t.tsv", run({"eval", curve, "--grid", "8", "--derivatives", order}).out);
+                                  "degree = 3\npoints = [[0, 0], [1, 2], [2, -1], [3, 0]]\n");
+  const auto table = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"eval", curve, "--grid", "8"};
+    words.insert(words.end(), more.begin(), more.end());
+    return write("t.tsv", run(words).out);
   };
-  EXPECT_EQ(made({"fit", table("0")}).curves.front().dim(), 2);
-  EXPECT_EQ(made({"fit", table("1")}).curves.front().dim(), 4) << "a column is a coordinate";
-  const std::string wide = table("2");
+  EXPECT_EQ(made({"fit", table({})}).curves.front().dim(), 2);
+  const std::string with_slopes = table({"--derivatives", "1"});
+  EXPECT_EQ(made({"fit", with_slopes}).curves.front().dim(), 4) << "a column is a coordinate";
+  const std::string wide = table({"--derivatives", "2"});
   expect_failure({"fit", wide}, wide + ":1: error: 7 columns; a time and 1 to 4 values are read");
   EXPECT_THAT(run({"fit", "--help"}).out, HasSubstr("leave out --derivatives"));
 }

@@ -46,7 +46,8 @@ Result<LearnSpec> read_midi_learn(const std::string& path);
 /// Text that parse_midi_learn() reads to an equal spec; the same spec gives the same text.
 std::string write_midi_learn(const LearnSpec& spec);
 
-/// All by one thread, or under one lock. Knows no port: two keyboards that send the same controller are one knob.
+/// All by one thread, or under one lock. Knows no port: two keyboards that send the same controller
+/// are one knob.
 class MidiLearn {
  public:
   /// How a knob stands to the value in force. Of those that have not met it the player is told

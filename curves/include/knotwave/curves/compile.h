@@ -35,14 +35,15 @@ Result<NurbsCurve> curve_with(const NurbsCurve& curve, const std::vector<Control
 
 /// A curve as a function. dim 1: u is the parameter, degree <= 7 stays exact (spans are cut where
 /// rounding would be above max_error), above that pieces of degree 7 are fitted, their error
-/// proved; they meet in value and, to rounding, in slope. dim 2: x is the
-/// parameter (time) and y the value, the inversion is baked into explicit pieces (u_min = x at the
-/// start). Vertical tangents are allowed and meet max_error at every double; where x stands still y
-/// jumps. docs/compile.md has the method. Errors: not_a_function (x goes back: the message gives
-/// the interval of u), not_scalar (dim > 2), error_bound_missed, control_conflict (point and weight
-/// of the same index, or two controls for the same number), value_out_of_range (a control's range
-/// leaves the limits of curve files or leaves out the value written there), empty_domain (2-D: x
-/// never moves), unsupported (controls on a 2-D curve or on degree > 7).
+/// proved; they meet in value and, to rounding, in slope. dim 2: x is the parameter (time) and y
+/// the value, the inversion is baked into explicit pieces (u_min = x at the start). Vertical
+/// tangents are allowed and meet max_error at every double (those of order 5 and more inside a span
+/// may be refused: error_bound_missed); where x stands still y jumps. docs/compile.md has the
+/// method. Errors: not_a_function (x goes back: the message gives the interval of u), not_scalar
+/// (dim > 2), error_bound_missed, control_conflict (point and weight of the same index, or two
+/// controls for the same number), value_out_of_range (a control's range leaves the limits of curve
+/// files or leaves out the value written there), empty_domain (2-D: x never moves), unsupported
+/// (controls on a 2-D curve or on degree > 7).
 Result<CurveProgram> compile_function(const NurbsCurve& curve, const CompileOptions& options = {});
 
 /// Every coordinate as a function of u (waveforms, orbits, arcs). Errors as above but

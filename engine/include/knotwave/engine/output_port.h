@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// A MIDI cable with a byte budget: values that move in, as few messages as say them out, each at
+// its time.
+//
+// A value is a step of its lane: 0..127 or 0..16383. A message is on the wire for its bytes and
+// counts when its last byte has come. While the cable is free, a message is begun so that it has
+// come when the value crosses to the next step (half way between two). While it is not, the newest
+// value wins, and among lanes priority, then the one that waits longest. A receiver holds what it
+// heard until it hears more: where a value runs faster than its messages, the middle of what it
+// does meanwhile is sent, but for the lowest and the highest step of a lane, which are always
+// reached, and the last value, which is always sent.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "knotwave/base/midi_event.h"
+#include "knotwave/base/result.h"
+#include "knotwave/engine/envelope_patch.h"
+
+namespace knotwave::engine {
+
+inline constexpr double kDinBytesPerSecond = 3125;  ///< 31250 baud, 10 bits a byte (MIDI 1.0)
+inline constexpr double kUsbFrameSeconds = 0.001;   ///< USB MIDI 1.0 at full speed
+inline constexpr double kNrpnNullSeconds = 0.5;
+
+struct OutputPortConfig {
+  PortSpec::Wire wire = PortSpec::Wire::none;
+  bool running_status = true;  ///< counted on; with Wire::din alone
+  double rate_hz = 48000;
+};
+
+/// One value on the cable.
+struct LaneSpec {
+  OutputKind kind = OutputKind::control;  ///< of MIDI
+  int channel = 1;                        ///< 1..16
+  int number = 0;
+  int key = 60;  ///< poly_pressure
+  int bits = 7;
+  int first_step = 0;  ///< what the receiver is taken to hold; -1: nobody knows, so it is sent
+};
+
+/// The order in which what waits goes out.
+enum class OutputPriority : std::uint8_t { clock, note, expression, control };
+
+/// What an owner shows.
+struct PortCounters {
+  std::int64_t messages = 0;
+  std::int64_t bytes = 0;           ///< on the wire, running status counted
+  std::int64_t thru_bytes = 0;      ///< of them those that were passed through
+  std::int64_t overload_bytes = 0;  ///< thru that came while more than 20 ms of it waited
+  double most_waiting_s = 0;        ///< of a thru message
+  double use = 0;                   ///< 0..1 of the budget, over the last second; 0: no budget
+};
+
+/// Takes what an output port sends. [audio]
+class PortSink {
+ public:
+  /// Complete messages in order of time; `event.time` is when the first byte goes out.
+  virtual void send(const base::MidiEvent& event) KNOTWAVE_RT = 0;
+
+ protected:
+  ~PortSink() = default;
+};
+
+class OutputPort {
+ public:
+  static constexpr int kMostLanes = 512;
+  static constexpr std::size_t kMostWaiting = 1024;  ///< thru messages; more are lost and counted
+
+  /// [control] Errors: value_out_of_range.
+  static Result<std::unique_ptr<OutputPort>> create(const OutputPortConfig& config);
+  ~OutputPort();
+
+  /// [control] Its number. Errors: value_out_of_range; capacity (above kMostLanes).
+  Result<int> add_lane(const LaneSpec& spec);
+  /// Which key or channel a lane is about from now on (a voice was given another note). [audio]
+  void address(int lane, int channel, int key) KNOTWAVE_RT;
+
+  /// How far after a block's end values must be known: what a message takes on the wire and the
+  /// next one after it, in samples, rounded up. 0 without a budget. [any]
+  std::size_t ahead_samples() const KNOTWAVE_RT;
+
+  /// A message that must go out, before lanes of lower priority: notes, clock, thru. Times rise
+  /// within a priority. False: kMostWaiting were waiting, it is lost. System exclusive is kept by
+  /// reference until it is sent. [audio]
+  bool post(const base::MidiEvent& event, OutputPriority priority, bool is_thru) KNOTWAVE_RT;
+
+  /// The values of one lane over a block: steps, unrounded; [n + ahead_samples()]. Empty: it holds.
+  using LaneValues = std::span<const double>;
+  /// Everything that begins within samples first..first+n-1. lanes[i] belongs to lane i. [audio]
+  /// About n operations a lane that moves, and one a lane that holds.
+  void render(std::int64_t first, std::size_t n, std::span<const LaneValues> lanes,
+              PortSink& sink) KNOTWAVE_RT;
+
+  int last_step(int lane) const KNOTWAVE_RT;  ///< what was sent last
+  bool is_waiting() const KNOTWAVE_RT;        ///< something has not been sent yet
+  const PortCounters& counters() const KNOTWAVE_RT;
+  std::int64_t lane_bytes(int lane) const KNOTWAVE_RT;
+
+ private:
+  struct State;
+  explicit OutputPort(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace knotwave::engine

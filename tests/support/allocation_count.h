@@ -7,6 +7,8 @@ namespace knotwave::support {
 
 /// Allocations through operator new by this thread since the program began.
 std::int64_t allocation_count() noexcept;
+/// Those of all threads that were not deleted yet.
+std::int64_t live_objects() noexcept;
 
 /// EXPECT_EQ(allocations_in([&] { voice.render(out); }), 0);
 template <class Work>

@@ -74,6 +74,14 @@ void set_signals() {
   std::atexit(restore_terminal);
 }
 
+/// Held back until the next program lets them through: none is lost between the two.
+void hold_signals(int how) {
+  sigset_t ends;
+  ::sigemptyset(&ends);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&ends, signal);
+  ::pthread_sigmask(how, &ends, nullptr);
+}
+
 int say(const Error& error) { return say_error(kProgram, error); }
 
 /// What a service manager or a shell expects of an end that was asked for.
@@ -100,7 +108,11 @@ int play(const SynthOptions& options, char** argv) {
   const bool has_failed = (*synth)->has_failed();
   synth->reset();
   demo.reset();
-  if (end == Synth::End::restart) return say(restart_program(next, argv));
+  if (end == Synth::End::restart) {
+    hold_signals(SIG_BLOCK);
+    if (signals == 0) return say(restart_program(next, argv));
+    return exit_code_of_signal();
+  }
   if (end == Synth::End::signal) return exit_code_of_signal();
   return has_failed ? kExitFailure : kExitOk;
 }
@@ -126,6 +138,7 @@ int run(const SynthOptions& options, char** argv) {
 int main(int argc, char** argv) {
   guard_standard_streams();
   set_signals();
+  hold_signals(SIG_UNBLOCK);
   try {
     const CommandLine line = read_command_line(argc, argv);
     leave(line.exit_code ? *line.exit_code : run(line.options, argv));

@@ -24,7 +24,7 @@ base::SampleTime clock_time(std::int64_t time_ns) {
 
 MidiEntry::MidiEntry(EngineGate& gate) : gate_(gate) {
   lock_.clear();
-  exact_.reserve(2 * kMostExact);
+  exact_.reserve(2 * kMostExact + kMostHeld);
   for (engine::MidiClock& clock : clocks_) clock.reset(kClockRate);
 }
 
@@ -83,14 +83,24 @@ void MidiEntry::lost(int port) noexcept {
   });
 }
 
+void MidiEntry::follow_stream_sender() noexcept {
+  if (must_forget_.exchange(false, std::memory_order_relaxed)) stream_notes_ = {};
+  if (!has_sender_left_.exchange(false, std::memory_order_relaxed)) return;
+  stream_notes_.release([this](std::uint8_t status, std::uint8_t first, std::uint8_t second) {
+    exact_.push_back({{0, 0}, {status, first, second}});
+  });
+}
+
 std::span<const base::MidiEvent> MidiEntry::translated(std::span<const base::MidiEvent> exact,
                                                        std::int64_t time_ns,
                                                        double rate_hz) KNOTWAVE_RT {
   exact_.clear();
+  follow_stream_sender();
   for (const base::MidiEvent& event : exact.first(std::min(exact.size(), kMostExact))) {
     const auto offset_ns =
         static_cast<std::int64_t>(static_cast<double>(event.time.sample) * 1e9 / rate_hz);
     if (is_clock(event, time_ns + offset_ns, kStreamPort)) continue;
+    stream_notes_.heard(event);
     const auto out = learned(event);
     for (int i = 0; i < out.count; ++i) {
       exact_.push_back(out.messages[static_cast<std::size_t>(i)]);
@@ -102,6 +112,7 @@ std::span<const base::MidiEvent> MidiEntry::translated(std::span<const base::Mid
 
 void MidiEntry::forget() noexcept {
   for (PortNotes& notes : notes_) notes = {};
+  must_forget_ = true;
   const Lock lock(lock_, kEndless);
   if (learn_) learn_->controllers_went_back();
 }

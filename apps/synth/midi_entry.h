@@ -31,6 +31,8 @@ class MidiEntry {
   /// was asked for at `time_ns`. Valid until the next call. [audio]
   std::span<const base::MidiEvent> translated(std::span<const base::MidiEvent> exact,
                                               std::int64_t time_ns, double rate_hz) KNOTWAVE_RT;
+  /// Who was connected to the stream's own port went: what it holds ends with the next block. [any]
+  void stream_sender_left() noexcept { has_sender_left_ = true; }
   /// Bit p: port p is not listened to, as the stream's own port hears the same. [any]
   void leave_out(std::uint32_t ports) noexcept { left_out_ = ports; }
   /// Nothing is held any more, and every controller is back. [control]
@@ -75,6 +77,10 @@ class MidiEntry {
   static constexpr std::size_t kStreamPort = io::kMaxMidiPorts;  ///< the stream's own
   static constexpr std::size_t kMostExact = 4096;
 
+  /// The most that PortNotes lets go: three pedals and 128 keys of 16 channels.
+  static constexpr std::size_t kMostHeld = std::size_t{16} * (3 + 128);
+
+  void follow_stream_sender() noexcept;
   engine::MidiLearn::Out learned(const base::MidiEvent& event) noexcept;
   bool is_clock(const base::MidiEvent& event, std::int64_t time_ns, std::size_t port) noexcept;
 
@@ -87,6 +93,8 @@ class MidiEntry {
   std::optional<engine::MidiLearn> learn_;
   std::atomic<bool> has_learn_{false};
   std::vector<base::MidiEvent> exact_;
+  PortNotes stream_notes_;  ///< of the audio thread
+  std::atomic<bool> has_sender_left_{false}, must_forget_{false};
 };
 
 }  // namespace knotwave::synth

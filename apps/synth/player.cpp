@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <span>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -12,6 +13,8 @@ namespace knotwave::synth {
 namespace {
 
 constexpr std::int64_t kTryEveryNs = 500'000'000;
+/// A call that hangs in a JACK server that stands still comes back with it, or when it is killed.
+constexpr std::int64_t kJackPatienceNs = 10'000'000'000;
 constexpr double kFadeSeconds = 0.05;
 constexpr std::size_t kMostRecords = 2'000'000;  ///< some 130 MB
 
@@ -48,27 +51,31 @@ Result<std::unique_ptr<Player>> Player::open(const PlayerConfig& config, Playabl
   return player;
 }
 
+/// What hangs is waited for once, not one after the other.
 Player::~Player() {
-  midi_.reset();
+  std::thread other;
+  try {
+    other = std::thread([this] { midi_.reset(); });
+  } catch (const std::system_error&) {
+    midi_.reset();
+  }
   stream_.reset();
+  if (other.joinable()) other.join();
   gate_.lead_to(nullptr);
 }
 
 Result<void> Player::open_stream(const PlayerConfig& config) {
-  const bool is_resumed = !config.lost_api.empty();
-  io::AudioConfig wanted = config.audio;
-  if (is_resumed) wanted.api = config.lost_api;
-  auto stream = io::AudioStream::open(wanted, *this);
-  if (stream) {
-    stream_ = *std::move(stream);
-    return {};
-  }
-  if (is_resumed) {
+  if (!config.lost_api.empty()) {  // it is looked for by the first tick, which waits for nothing
     is_lost_ = true;
-    lost_reason_ = stream.error().message;
+    lost_reason_ = "the program was started anew";
     lost_format_.api = config.lost_api;
     lost_format_.rate_hz = config.lost_rate_hz;
     return open_substitute();
+  }
+  auto stream = io::AudioStream::open(config.audio, *this);
+  if (stream) {
+    stream_ = *std::move(stream);
+    return {};
   }
   const bool may_do_without = config.plays_without_device && !is_device_chosen(config.audio);
   if (!may_do_without || stream.error().code != ErrorCode::unsupported) return stream.error();
@@ -139,10 +146,22 @@ void Player::tick(std::int64_t now_ns, std::vector<std::string>& told) {
   journal();
   tell_midi(told);
   const io::AudioStatus status = stream_->status();
+  if (is_leaving_) leave_device(told);
   if (!is_lost_ && status.state == io::AudioStatus::State::lost) lose(status.reason, told);
   leave_to_stream(status.midi_sources);
-  wants_restart_ = wants_restart_ || (is_lost_ && io::AudioStream::is_poisoned());
-  if (is_lost_ && !wants_restart_) look_for_device(now_ns, told);
+  follow_senders(status.midi_sources, told);
+  follow_hang(now_ns);
+  if (is_lost_ && !is_leaving_ && !wants_restart_) look_for_device(now_ns, told);
+}
+
+void Player::follow_hang(std::int64_t now_ns) {
+  if (!is_lost_ || !io::AudioStream::is_poisoned()) {
+    hangs_since_ns_ = 0;
+    return;
+  }
+  if (hangs_since_ns_ == 0) hangs_since_ns_ = now_ns;
+  const std::int64_t patience_ns = lost_format_.api == "jack" ? kJackPatienceNs : 0;
+  wants_restart_ = wants_restart_ || now_ns - hangs_since_ns_ >= patience_ns;
 }
 
 /// Ports of JACK that are connected to the stream's own port are heard once: there.
@@ -153,6 +172,18 @@ void Player::leave_to_stream(const std::vector<std::string>& sources) {
     if (port.api == "jack" && port.is_open && is_there) bits |= std::uint32_t{1} << port.port;
   }
   entry_.leave_out(bits);
+}
+
+/// Whose of the notes are is not known, so all end; but what is held outlives the device.
+void Player::follow_senders(const std::vector<std::string>& sources,
+                            std::vector<std::string>& told) {
+  const std::vector<std::string> before = std::exchange(senders_, sources);
+  if (is_lost_) return;
+  for (const std::string& name : before) {
+    if (std::find(sources.begin(), sources.end(), name) != sources.end()) continue;
+    entry_.stream_sender_left();
+    told.push_back("MIDI: '" + name + "' was unplugged; the notes of its port ended");
+  }
 }
 
 void Player::tell_midi(std::vector<std::string>& told) {
@@ -196,13 +227,18 @@ void Player::panic() {
   entry_.forget();
 }
 
-/// Without the device the engine goes on by the clock: notes are released, takes go on.
+/// Leaving it may take a while, so it is told first.
 void Player::lose(const std::string& reason, std::vector<std::string>& told) {
-  is_lost_ = true;
+  is_lost_ = is_leaving_ = true;
   lost_reason_ = reason;
   lost_format_ = stream_->format();
   told.push_back("the sound device is lost: " + reason +
                  "; patch and notes are kept until it comes back");
+}
+
+/// Without the device the engine goes on by the clock: notes are released, takes go on.
+void Player::leave_device(std::vector<std::string>& told) {
+  is_leaving_ = false;
   stream_.reset();
   auto good = open_substitute();
   if (good) good = stream_->start();

@@ -81,11 +81,14 @@ class Player final : private io::AudioClient, private io::MidiListener {
   Result<void> make_engine();
   Result<void> open_substitute();
   void lose(const std::string& reason, std::vector<std::string>& told);
+  void leave_device(std::vector<std::string>& told);
+  void follow_hang(std::int64_t now_ns);
   void look_for_device(std::int64_t now_ns, std::vector<std::string>& told);
   void take_device(std::unique_ptr<io::AudioStream> stream, std::vector<std::string>& told);
   void start_found(std::vector<std::string>& told);
   void tell_midi(std::vector<std::string>& told);
   void leave_to_stream(const std::vector<std::string>& sources);
+  void follow_senders(const std::vector<std::string>& sources, std::vector<std::string>& told);
 
   PlayerConfig config_;
   PlayableBank bank_;
@@ -102,10 +105,12 @@ class Player final : private io::AudioClient, private io::MidiListener {
   StreamOpener opener_;
   io::AudioFormat lost_format_;
   double rate_hz_ = 48000;  ///< of the engine
-  bool is_lost_ = false, wants_restart_ = false;
+  bool is_lost_ = false, is_leaving_ = false, wants_restart_ = false;
+  std::int64_t hangs_since_ns_ = 0;  ///< 0: nothing hangs
   std::string lost_reason_;
   std::int64_t next_try_ns_ = 0;
   std::vector<io::MidiPortStatus> ports_;  ///< as they were told
+  std::vector<std::string> senders_;       ///< connected to the stream's own port
   std::size_t notes_told_ = 0;
   std::vector<std::string> first_lines_;
   std::vector<float> mono_;  ///< of a single channel the other side

@@ -93,18 +93,20 @@ Resume Synth::resume() const {
 }
 
 Synth::End Synth::run(const std::atomic<int>& signals) {
+  bool is_over = false;
   for (;;) {
     const std::int64_t now_ns = io::steady_clock_ns();
     read_keys(now_ns);
     if (now_ns >= next_tick_ns_) tick(now_ns);
-    const bool is_over = options_.duration_s > 0 &&
-                         static_cast<double>(now_ns - start_ns_) >= 1e9 * options_.duration_s;
+    is_over = options_.duration_s > 0 &&
+              static_cast<double>(now_ns - start_ns_) >= 1e9 * options_.duration_s;
     if (signals > 0 || is_quitting_ || is_over || player_->wants_restart()) break;
     wait(now_ns);
   }
+  const bool is_restart = player_->wants_restart() && signals == 0 && !is_quitting_ && !is_over;
   if (!player_->wants_restart()) player_->fade_out();
   end_take();
-  if (player_->wants_restart()) return End::restart;
+  if (is_restart) return End::restart;
   return signals > 0 ? End::signal : End::asked;
 }
 

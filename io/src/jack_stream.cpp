@@ -14,7 +14,7 @@ namespace knotwave::io {
 namespace {
 
 constexpr std::chrono::milliseconds kServerAnswersWithin{3000};
-constexpr std::chrono::milliseconds kClosesWithin{800};
+constexpr std::chrono::milliseconds kClosesWithin{700};
 constexpr const char* kNotConnected = "not connected";
 
 class JackStream final : public AudioStream {

@@ -12,7 +12,7 @@ namespace knotwave::io {
 namespace {
 
 constexpr std::int64_t kRetryNs = 500'000'000;
-constexpr std::chrono::seconds kClosesWithin{1};
+constexpr std::chrono::milliseconds kClosesWithin{700};
 constexpr const char* kOwnName = "in";
 
 /// Destroys what talks to the JACK server. Where that hangs, it is left behind.

@@ -12,7 +12,7 @@ namespace knotwave::io {
 namespace {
 
 constexpr std::chrono::milliseconds kOpensWithin{5000}, kStartsWithin{3000};
-constexpr std::chrono::milliseconds kStopsWithin{800};
+constexpr std::chrono::milliseconds kStopsWithin{700};
 constexpr double kMostLatencySeconds = 10;  // PipeWire has said 89478 s
 
 /// What the callback works on. Destroyed inside portaudio_calls().

@@ -17,39 +17,13 @@
 #include "knotwave/io/midi_file.h"
 #include "knotwave/io/sound_file.h"
 
-#include "apps/render_scene.h"
-#include "live/live_clients.h"
-#include "live/synth_process.h"
-#include "support/jack_clients.h"
-#include "support/jack_server.h"
+#include "live/synth_scene.h"
 
 namespace knotwave::synth {
 namespace {
 
-using io::seconds_until;
-using support::JackCapture;
-using support::JackMidiSender;
-using support::JackServer;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr const char* kOut1 = "Knotwave:out_1";
-constexpr const char* kOut2 = "Knotwave:out_2";
-constexpr const char* kMidiIn = "Knotwave:midi_in";
-
-class SynthProgram : public render::RenderScene {
- protected:
-  SynthProcess::Options here() const {
-    SynthProcess::Options options;
-    options.folder = folder_.path();
-    return options;
-  }
-  SynthProcess::Options at_terminal() const {
-    SynthProcess::Options options = here();
-    options.has_terminal = true;
-    return options;
-  }
-};
 
 /// That the take renders again to the samples that were heard.
 class SynthTake : public SynthProgram {
@@ -70,24 +44,8 @@ class SynthUnderJack : public SynthTake {
  protected:
   void SetUp() override { ASSERT_TRUE(server_.runs()) << server_.log(); }
 
-  static JackMidiSender::Message at(std::int64_t frame, std::vector<std::uint8_t> bytes) {
-    return {frame, std::move(bytes)};
-  }
-  /// A note that is held; the sender must live as long as it is to be heard of.
-  static std::vector<JackMidiSender::Message> held_note() { return {at(0, {0x90, 69, 127})}; }
-
   JackServer server_{256};
 };
-
-/// Of this process alone, as tests run side by side.
-std::string osc_port() { return std::to_string(20000 + ::getpid() % 12000); }
-
-/// Where two channels begin to sound; their size if they never do.
-std::size_t onset(const std::vector<float>& samples) {
-  return static_cast<std::size_t>(
-      std::find_if(samples.begin(), samples.end(), [](float x) { return x != 0; }) -
-      samples.begin());
-}
 
 std::vector<float> channel_of(const io::Sound& sound, std::size_t channel) {
   std::vector<float> samples;
@@ -162,80 +120,6 @@ TEST_F(SynthUnderJack, ASavedPatchIsHeardAndABrokenOneToldWhileTheOldOnePlaysOn)
   EXPECT_EQ(synth.exit_code(), 130);
   write("small.toml", "the journal knows what was in it");
   expect_rendered_again("take", synth.err());
-}
-
-TEST_F(SynthUnderJack, AKilledServerIsToldAndAfterItsReturnTheHeldNoteSoundsWithinThreeSeconds) {
-  SynthProcess synth({"small.toml", "--json-status"}, here());
-  ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
-  {
-    JackMidiSender sender(kMidiIn, held_note());
-    ASSERT_TRUE(sender.is_connected());
-    ASSERT_TRUE(sender.wait_until_sent(10));
-    seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 20);
-  }
-  ASSERT_GT(synth.number("peak_left_dbfs"), -30);
-  server_.kill();
-  EXPECT_LT(seconds_until([&] { return synth.says("the sound device is lost", 0); }, 10), 1.0);
-  seconds_until([&] { return synth.field("state") == "lost"; }, 10);
-  EXPECT_EQ(synth.field("state"), "lost");
-  ASSERT_TRUE(server_.restart()) << server_.log();
-  const auto is_heard = [&] {
-    if (!synth.says("the sound device is back", 0)) return false;
-    JackCapture capture({kOut1}, 2048);
-    return capture.is_connected() && capture.wait_for(2048, 1) && onset(capture.channel(0)) < 2048;
-  };
-  EXPECT_LT(seconds_until(is_heard, 20), 3.0) << synth.err();
-  synth.signal(SIGTERM);
-  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
-}
-
-TEST_F(SynthUnderJack, WherePortAudioHangsTheProgramStartsItselfAnewWithWhatWasHeld) {
-  SynthProcess synth(
-      {"small.toml", "--json-status", "--audio-api", "portaudio-jack", "--osc", osc_port()},
-      here());
-  ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
-  write("other.toml", render::kSmallPatch);
-  lo_address to = lo_address_new("127.0.0.1", osc_port().c_str());
-  lo_send(to, "/patch", "s", "other.toml");
-  ASSERT_TRUE(synth.says("now playing other.toml"));
-  lo_send(to, "/note", "ii", 69, 127);
-  seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 20);
-  lo_address_free(to);
-  server_.kill();
-  ASSERT_TRUE(synth.says("the sound device is lost")) << synth.err();
-  seconds_until([&] { return synth.number("seconds") < 0.5; }, 10);  // another process by now
-  ASSERT_TRUE(server_.restart()) << server_.log();
-  EXPECT_LT(seconds_until([&] { return synth.says("the sound device is back", 0); }, 20), 3.0)
-      << synth.err();
-  seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 5);
-  EXPECT_GT(synth.number("peak_left_dbfs"), -30) << "the held note";
-  EXPECT_EQ(synth.field("patch"), "other.toml");
-  synth.signal(SIGTERM);
-  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
-}
-
-TEST_F(SynthProgram, AServerThatComesBackWithAnotherRateIsPlayedAtThatRate) {
-  auto server = std::make_unique<JackServer>(256, 48000);
-  ASSERT_TRUE(server->runs()) << server->log();
-  SynthProcess synth({"small.toml", "--json-status", "--record", "take.wav"}, here());
-  ASSERT_TRUE(synth.says("\"rate_hz\": 48000")) << synth.err();
-  {
-    JackMidiSender sender(kMidiIn, {{0, {0x90, 69, 127}}});
-    ASSERT_TRUE(sender.wait_until_sent(10));
-    seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 20);
-  }
-  server->kill();
-  ASSERT_TRUE(synth.says("the sound device is lost")) << synth.err();
-  server.reset();
-  server = std::make_unique<JackServer>(256, 44100);
-  ASSERT_TRUE(server->runs()) << server->log();
-  ASSERT_TRUE(synth.says("the sound device is back: jack: system, 44100 Hz")) << synth.err();
-  EXPECT_TRUE(synth.says("take.wav: 0:0")) << "a take ends with its engine";
-  seconds_until([&] { return synth.number("rate_hz") == 44100; }, 10);
-  seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 10);
-  EXPECT_GT(synth.number("peak_left_dbfs"), -30) << "the held note";
-  synth.signal(SIGTERM);
-  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
 }
 
 TEST_F(SynthUnderJack, AKnobIsLearntByMovingItAndKept) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
+#include "knotwave/engine/envelope_patch_program.h"
 #include "knotwave/engine/midi_learn.h"
 
 #include "bank_input/bank_input.h"
@@ -18,6 +19,15 @@ std::string count_of(const curves::CurveSet& set) {
   return count_of(set.curves.size(), "curve") + ", " + count_of(set.surfaces.size(), "surface");
 }
 
+Result<std::string> checked_envelope_patch(const std::string& path) {
+  const auto spec = engine::read_envelope_patch(path);
+  if (!spec) return spec.error();
+  const auto program = engine::EnvelopePatchProgram::create(*spec);
+  if (!program) return program.error();
+  return "envelope patch, " + count_of(spec->patch.curves) + ", " +
+         count_of(spec->patch.maps.size(), "map") + ", " + count_of(spec->outputs.size(), "output");
+}
+
 /// What a file holds; warnings go to standard error.
 Result<std::string> checked(const std::string& path) {
   const auto file = read_known_file(path);
@@ -32,6 +42,7 @@ Result<std::string> checked(const std::string& path) {
     if (!learnt) return learnt.error();
     return "MIDI learn file, " + count_of(learnt->knobs.size(), "knob");
   }
+  if (file->kind == curves::FileKind::envelope) return checked_envelope_patch(path);
   // Compiled as for playing: what is ok here can be rendered.
   const auto bank = bank_input::read(path);
   if (!bank) return bank.error();

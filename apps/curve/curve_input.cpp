@@ -8,6 +8,7 @@
 #include "knotwave/base/file.h"
 #include "knotwave/base/suggest.h"
 #include "knotwave/engine/bank.h"
+#include "knotwave/engine/envelope_patch.h"
 
 namespace knotwave::curve_app {
 
@@ -34,6 +35,11 @@ Result<curves::CurveSet> read_set(const std::string& path) {
     Error error = fail(ErrorCode::unsupported, "a MIDI learn file holds no curves");
     error.source = path;
     return error;
+  }
+  if (file->kind == curves::FileKind::envelope) {
+    auto patch = engine::read_envelope_patch(path);
+    if (!patch) return patch.error();
+    return std::move(patch->patch.curves);
   }
   auto bank = engine::read_bank(path);
   if (!bank) return bank.error();

@@ -24,6 +24,9 @@ Result<std::unique_ptr<const BankProgram>> BankProgram::create(const BankSpec& s
                                                    std::to_string(spec.patches.size()));
   }
   for (const PatchSpec& patch : spec.patches) {
+    if (!patch.has_sound) {
+      return fail(ErrorCode::unsupported, "patch '" + patch.name + "' has no sound to play");
+    }
     auto program = PatchProgram::create(patch, cycles);
     if (!program) return program.error();
     for (const std::string& line : (*program)->report()) {

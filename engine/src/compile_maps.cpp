@@ -25,6 +25,12 @@ constexpr bool varies_by_itself(MapSource source) {
   return source == MapSource::envelope || source == MapSource::lfo;
 }
 
+constexpr bool moves_sound(MapTarget target) {
+  return target != MapTarget::free_number && target != MapTarget::envelope_time &&
+         target != MapTarget::lfo_rate && target != MapTarget::curve_weight &&
+         target != MapTarget::curve_point && target != MapTarget::curve_knot;
+}
+
 Result<void> check_index(const char* what, int index, std::size_t count) {
   if (index >= 0 && static_cast<std::size_t>(index) < count) return {};
   return fail(ErrorCode::value_out_of_range, std::string(what) + " " + std::to_string(index) +
@@ -175,6 +181,9 @@ Result<void> PatchCompiler::check_target(const MapSpec& map) const {
   const auto oscillator = [&] {
     return check_index("oscillator", index, spec_.oscillators.size());
   };
+  if (!spec_.has_sound && moves_sound(map.target)) {
+    return fail(ErrorCode::unsupported, "an envelope patch has no sound that a map could move");
+  }
   switch (map.target) {
     case MapTarget::level:
       return is_noise ? Result<void>{} : oscillator();

@@ -5,7 +5,7 @@
 
 #include "knotwave/base/file.h"
 
-#include "patch_reader.h"
+#include "patch_tables.h"
 
 namespace knotwave::engine {
 namespace fs = std::filesystem;

@@ -75,6 +75,8 @@ Result<void> PatchCompiler::check_counts() {
   if (spec_.free_numbers.size() > kMaxFreeNumbers)
     return too_many("free numbers", spec_.free_numbers.size(), kMaxFreeNumbers);
   const int sources = static_cast<int>(spec_.oscillators.size());
+  if (!spec_.has_sound && sources > 0)
+    return fail(ErrorCode::unsupported, "an envelope patch has no oscillators");
   for (const int end : {spec_.crossfade_a, spec_.crossfade_b}) {
     if (!spec_.crossfade_on || end == kNoiseSource || (end >= 0 && end < sources)) continue;
     return placed(fail(ErrorCode::value_out_of_range, "the crossfade names oscillator " +
@@ -137,7 +139,8 @@ Result<void> PatchCompiler::compile_envelopes() {
          number_text(part.program.program().max_error()));
     program_->envelopes_.push_back(std::move(part));
   }
-  return add_default_amp();
+  program_->amp_envelope_ = -1;
+  return spec_.has_sound ? add_default_amp() : Result<void>{};
 }
 
 // Up in 3 ms, held, down in 15 ms: for a patch that draws no loudness of its own.

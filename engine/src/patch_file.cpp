@@ -4,6 +4,7 @@
 #include "knotwave/engine/bank.h"
 
 #include "bank_reader.h"
+#include "envelope_patch_reader.h"
 #include "patch_reader.h"
 
 namespace knotwave::engine {
@@ -13,7 +14,8 @@ Error wrong_kind(const base::Node& root, const std::string& source, curves::File
                  const std::string& needed) {
   Error error = kind == curves::FileKind::envelope
                     ? fail(ErrorCode::unsupported,
-                           "envelope-generator patches (kind = \"envelope\") are not supported yet")
+                           "this is a patch of the envelope generator (kind = \"envelope\"), which "
+                           "makes no sound: knotwave-env plays it")
                     : fail(ErrorCode::unsupported,
                            "this file's kind is '" + root.find("kind")->text + "'; " + needed);
   error.source = source;
@@ -88,6 +90,44 @@ Result<BankSpec> read_bank(const std::string& path) { return read_bank_from(path
 
 Result<BankSpec> read_bank(const std::string& path, std::span<const FileText> texts) {
   return read_bank_from(path, FileShelf(texts));
+}
+
+namespace {
+
+Result<EnvelopePatchSpec> parse_envelope_text(std::string_view text, const std::string& source,
+                                              FileShelf& shelf) {
+  const auto root = base::parse_document(text, source);
+  if (!root) return root.error();
+  const auto kind = curves::read_file_kind(*root, source);
+  if (!kind) return kind.error();
+  if (*kind == curves::FileKind::envelope) {
+    return EnvelopePatchReader(*root, source, shelf).read();
+  }
+  const bool has_sound = *kind == curves::FileKind::patch || *kind == curves::FileKind::bank;
+  return wrong_kind(*root, source, *kind,
+                    std::string("a patch of the envelope generator (kind = \"envelope\") is "
+                                "needed here") +
+                        (has_sound ? "; knotwave-synth and knotwave-render play this one" : ""));
+}
+
+}  // namespace
+
+Result<EnvelopePatchSpec> parse_envelope_patch(std::string_view text,
+                                               std::string_view source_name) {
+  FileShelf shelf;
+  const std::string source(source_name);
+  const FileShelf::Link link(shelf, source);
+  return parse_envelope_text(text, source, shelf);
+}
+
+Result<EnvelopePatchSpec> read_envelope_patch(const std::string& path) {
+  FileShelf shelf;
+  const FileShelf::Link link(shelf, path);
+  const auto text = shelf.read_first(path);
+  if (!text) return text.error();
+  auto spec = parse_envelope_text(*text, path, shelf);
+  if (spec) spec->texts = std::move(shelf.texts());
+  return spec;
 }
 
 }  // namespace knotwave::engine

@@ -6,7 +6,7 @@
 #include "knotwave/base/suggest.h"
 #include "knotwave/dsp/builtin_waves.h"
 
-#include "patch_reader.h"
+#include "patch_tables.h"
 #include "patch_words.h"
 
 namespace knotwave::engine {
@@ -83,31 +83,18 @@ bool check_knot_index(base::TableReader& reader, const base::Node& at,
 
 }  // namespace
 
-void PatchReader::read_maps() {
-  TableReader top(root_, source_, "patch");
-  const Node* maps = top.array("maps");
-  if (!top.ok()) return keep(top.finish());
-  if (maps == nullptr) return;
-  collect_free_numbers(*maps);
-  if (!ok()) return;
+void PatchTables::read_maps() {
+  const std::vector<const Node*> tables = tables_of("maps", "a map", kMaxMaps);
+  if (!ok() || tables.empty()) return;
+  collect_free_numbers(*root_.find("maps"));
   int number = 0;
-  for (const Node& table : maps->items) {
-    if (table.kind != Node::Kind::table) {
-      return fail_at(table.line, table.column, ErrorCode::wrong_type,
-                     "a map must be a table: [[maps]]");
-    }
-    if (++number > kMaxMaps) {
-      return fail_at(
-          table.line, table.column, ErrorCode::value_out_of_range,
-          "this map is one more than the " + std::to_string(kMaxMaps) + " a patch may have");
-    }
-    read_map(table, number);
-    if (!ok()) return;
+  for (const Node* table : tables) {
+    if (ok()) read_map(*table, ++number);
   }
 }
 
 // A free number is there because a map moves it; maps before that one may read it.
-void PatchReader::collect_free_numbers(const Node& maps) {
+void PatchTables::collect_free_numbers(const Node& maps) {
   for (const Node& table : maps.items) {
     const Node* to = table.kind == Node::Kind::table ? table.find("to") : nullptr;
     if (to == nullptr || to->kind != Node::Kind::string || !to->text.starts_with(kFreePrefix))
@@ -128,7 +115,7 @@ void PatchReader::collect_free_numbers(const Node& maps) {
   }
 }
 
-void PatchReader::read_map(const Node& table, int number) {
+void PatchTables::read_map(const Node& table, int number) {
   TableReader reader(table, source_, "map " + std::to_string(number));
   MapSpec map;
   read_map_sources(reader, map);
@@ -153,7 +140,7 @@ void PatchReader::read_map(const Node& table, int number) {
   patch_.maps.push_back(std::move(map));
 }
 
-void PatchReader::read_map_sources(TableReader& reader, MapSpec& map) {
+void PatchTables::read_map_sources(TableReader& reader, MapSpec& map) {
   const Node* from = reader.node("from");
   std::vector<const Node*> words;
   if (from != nullptr && from->kind == Node::Kind::array) {
@@ -207,26 +194,35 @@ void PatchReader::read_map_sources(TableReader& reader, MapSpec& map) {
   }
 }
 
-void PatchReader::read_map_target(TableReader& reader, MapSpec& map) {
+void PatchTables::read_map_target(TableReader& reader, MapSpec& map) {
   const std::string word = reader.string("to");
   const Node* at = reader.node("to");
   if (!reader.ok()) return;
   if (word.starts_with("curve.")) return read_curve_target(reader, *at, map);
   const auto target = find_target(patch_, word);
   if (!target) {
-    const std::string section = word.substr(0, word.find('.'));
-    const bool absent = is_section_word(section) && root_.find(section) == nullptr;
-    return reader.fail_at(
-        *at, ErrorCode::unknown_name,
-        "there is no target '" + word + "' in this patch" +
-            (absent ? ", which has no [" + section + "]" : target_suggestion(patch_, word)));
+    return reader.fail_at(*at, ErrorCode::unknown_name,
+                          "there is no target '" + word + "' in this patch" + why_no_target(word));
   }
   map.target = target->target;
   map.target_index = target->index;
 }
 
+std::string PatchTables::why_no_target(const std::string& word) const {
+  const std::string section = word.substr(0, word.find('.'));
+  const bool is_silent_word = section == "free" || section == "lfo" || section == "envelope";
+  if (!patch_.has_sound && !is_silent_word) {
+    return ", which has no oscillators and no sound: a map moves free.NAME, envelope.NAME.time, "
+           "lfo.NAME.rate or a number of a curve";
+  }
+  if (is_section_word(section) && root_.find(section) == nullptr) {
+    return ", which has no [" + section + "]";
+  }
+  return target_suggestion(patch_, word);
+}
+
 // curve.NAME.weight.I, curve.NAME.point.I, curve.NAME.point.I.x or curve.NAME.knot.K
-void PatchReader::read_curve_target(TableReader& reader, const Node& at, MapSpec& map) {
+void PatchTables::read_curve_target(TableReader& reader, const Node& at, MapSpec& map) {
   const auto parts = split_at_dots(at.text);
   const bool weight = parts.size() == 4 && parts[2] == "weight";
   const bool knot = parts.size() == 4 && parts[2] == "knot";
@@ -282,7 +278,7 @@ void PatchReader::read_curve_target(TableReader& reader, const Node& at, MapSpec
 }
 
 // A number has one controller; a point and its weight multiply, so only one of them may move.
-void PatchReader::check_control_conflict(TableReader& reader, const Node& at, const MapSpec& map) {
+void PatchTables::check_control_conflict(TableReader& reader, const Node& at, const MapSpec& map) {
   int controls = 0;
   for (std::size_t i = 0; i < patch_.maps.size(); ++i) {
     const MapSpec& other = patch_.maps[i];

@@ -79,12 +79,8 @@ constexpr base::Synonym kTargetSynonyms[] = {
 };
 
 int controller_number(std::string_view word) {
-  if (!word.starts_with("cc")) return -1;
-  word.remove_prefix(2);
-  int number = -1;
-  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), number);
-  const bool whole = status == std::errc{} && end == word.data() + word.size();
-  return whole && number >= 0 && number <= kLastController ? number : -1;
+  const int number = number_after("cc", word);
+  return number <= kLastController ? number : -1;
 }
 
 bool has_noise(const PatchSpec& patch) { return patch.noise_db > kNoiseOffDb; }
@@ -127,7 +123,9 @@ std::string suggested(std::string_view word, const std::vector<std::string>& wor
 
 std::vector<TargetChoice> target_choices(const PatchSpec& patch) {
   std::vector<TargetChoice> all;
-  for (const auto& [word, target] : kVoiceTargets) all.push_back({std::string(word), {target, -1}});
+  for (const auto& [word, target] : kVoiceTargets) {
+    if (patch.has_sound) all.push_back({std::string(word), {target, -1}});
+  }
   for (std::size_t i = 0; i < patch.oscillators.size(); ++i) {
     for (const auto& [word, target] : kOscillatorTargets) {
       all.push_back(
@@ -158,6 +156,15 @@ std::vector<TargetChoice> target_choices(const PatchSpec& patch) {
                    {MapTarget::free_number, static_cast<int>(i)}});
   }
   return all;
+}
+
+int number_after(std::string_view prefix, std::string_view word) {
+  if (!word.starts_with(prefix)) return -1;
+  word.remove_prefix(prefix.size());
+  int number = -1;
+  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const bool whole = status == std::errc{} && end == word.data() + word.size();
+  return whole && number >= 0 ? number : -1;
 }
 
 bool is_controller_word(std::string_view word) {

@@ -10,6 +10,24 @@
 
 namespace knotwave::engine {
 
+/// The names of `items`, in their order.
+template <class Item>
+std::vector<std::string_view> names_of(const std::vector<Item>& items) {
+  std::vector<std::string_view> names;
+  names.reserve(items.size());
+  for (const Item& item : items) names.push_back(item.name);
+  return names;
+}
+
+/// One of `items` is called so.
+template <class Item>
+bool has_name(const std::vector<Item>& items, std::string_view name) {
+  for (const Item& item : items) {
+    if (item.name == name) return true;
+  }
+  return false;
+}
+
 /// What comes before the name of a free number.
 inline constexpr std::string_view kFreePrefix = "free.";
 
@@ -23,6 +41,8 @@ struct SourceWord {
 bool is_source_word(std::string_view word);
 /// "cc" and a number, whether there is such a controller or not.
 bool is_controller_word(std::string_view word);
+/// The whole number after a prefix, "cc74" or "nrpn100", or -1.
+int number_after(std::string_view prefix, std::string_view word);
 /// Whether a word begins targets, so that no oscillator may be called so.
 bool is_target_word(std::string_view word);
 

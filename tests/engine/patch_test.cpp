@@ -355,8 +355,8 @@ TEST(Patch, EachBrokenPatchAndBankIsReportedAtItsFault) {
 
 TEST(Patch, AnEnvelopeGeneratorPatchIsRefusedByName) {
   EXPECT_EQ(error_of("format = 1\nkind = 'envelope'\n"),
-            "test.toml:2:8: error: envelope-generator patches (kind = \"envelope\") are not "
-            "supported yet");
+            "test.toml:2:8: error: this is a patch of the envelope generator (kind = "
+            "\"envelope\"), which makes no sound: knotwave-env plays it");
 }
 
 }  // namespace

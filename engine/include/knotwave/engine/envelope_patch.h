@@ -13,7 +13,9 @@
 
 namespace knotwave::engine {
 
-inline constexpr int kMaxOutputs = 32;      ///< of a patch
+inline constexpr int kMaxOutputs = 32;         ///< of a patch
+inline constexpr int kMaxEnvelopeVoices = 32;  ///< of a patch
+inline constexpr int kUsualEnvelopeVoices = 8;
 inline constexpr int kMaxPlaceEvents = 16;  ///< of a patch
 inline constexpr int kMaxOutputPorts = 16;  ///< of all patches together
 
@@ -99,8 +101,9 @@ struct PortSpec {
 };
 
 struct EnvelopePatchSpec {
-  PatchSpec
-      patch;  ///< curves, envelopes, LFOs, maps, free numbers, mode, polyphony, seed; no sound
+  /// Curves, envelopes, LFOs, maps, free numbers, mode, polyphony, seed; PatchSpec::has_sound is
+  /// false.
+  PatchSpec patch;
   TriggerSpec trigger;
   NoteOutput notes = NoteOutput::off;
   std::string notes_port;
@@ -113,7 +116,8 @@ struct EnvelopePatchSpec {
 
 /// Reads a patch and every file it names. Errors: those of read_bank(); unsupported (a kind that is
 /// no envelope: the message says which program plays it); unknown_name; value_out_of_range;
-/// malformed (no outputs); all with file, line and column.
+/// malformed (no outputs and no events; keys that do not go together); all with file, line and
+/// column.
 Result<EnvelopePatchSpec> read_envelope_patch(const std::string& path);
 /// From text; files are looked up beside `source_name`. For tests and fuzzers.
 Result<EnvelopePatchSpec> parse_envelope_patch(std::string_view text, std::string_view source_name);

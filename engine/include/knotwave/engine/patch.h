@@ -137,6 +137,8 @@ struct PatchSpec {
   std::string about;        ///< one line for people, or empty
   std::string source_name;  ///< file, for messages
   curves::CurveSet curves;  ///< its own, those of its curve files, and the built-in ones it uses
+  bool has_sound = true;    ///< false: of the envelope generator; no amp envelope, and maps move
+                            ///< free numbers, times, rates and curves alone
   std::vector<OscillatorSpec> oscillators;
   double noise_db = kNoiseOffDb;
   double noise_pan = 0.5;

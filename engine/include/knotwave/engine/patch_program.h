@@ -91,7 +91,9 @@ class PatchProgram {
   std::span<const Source> oscillators() const KNOTWAVE_RT { return oscillators_; }
   const Source& noise() const KNOTWAVE_RT { return noise_; }
   std::span<const EnvelopePart> envelopes() const KNOTWAVE_RT { return envelopes_; }
-  int amp_envelope() const KNOTWAVE_RT { return amp_envelope_; }
+  int amp_envelope() const KNOTWAVE_RT {
+    return amp_envelope_;
+  }  ///< -1: PatchSpec::has_sound false
   std::span<const LfoPart> lfos() const KNOTWAVE_RT { return lfos_; }
   /// Those that are on and not overridden.
   std::span<const MapPart> maps() const KNOTWAVE_RT { return maps_; }

@@ -280,6 +280,26 @@ void Modulation::render_lfo(const PatchProgram& patch, const NoteContext& note, 
                       std::span(scratch.lfos[index]).first(n));
 }
 
+void Modulation::look_ahead_from(const Modulation& other, const PatchProgram& patch) KNOTWAVE_RT {
+  const auto copy = [](const auto& from, std::size_t count, auto& to) {
+    std::copy_n(from.begin(), count, to.begin());
+  };
+  copy(other.envelopes_, patch.envelopes().size(), envelopes_);
+  copy(other.lfos_, patch.lfos().size(), lfos_);
+  copy(other.players_, patch.maps().size(), players_);
+  limited_joins_seen_ = other.limited_joins_seen_;
+}
+
+bool Modulation::is_still(const PatchProgram& patch, std::int64_t first) const KNOTWAVE_RT {
+  for (std::size_t i = 0; i < patch.envelopes().size(); ++i) {
+    if (!envelopes_[i].is_idle()) return false;
+  }
+  for (std::size_t i = 0; i < patch.maps().size(); ++i) {
+    if (!players_[i].source.is_still(first) || !players_[i].source_v.is_still(first)) return false;
+  }
+  return true;
+}
+
 int Modulation::take_limited_joins(const PatchProgram& patch) KNOTWAVE_RT {
   int total = 0;
   for (std::size_t i = 0; i < patch.envelopes().size(); ++i) {

@@ -48,9 +48,15 @@ class Modulation {
   void release(const PatchProgram& patch, base::SampleTime time) KNOTWAVE_RT;
   /// Lets sources glide to what the player does now, from `sample` on. [audio]
   void follow(const PatchProgram& patch, const NoteContext& note, std::int64_t sample) KNOTWAVE_RT;
-  /// Fills scratch.slots and scratch.envelopes for samples first..first+n-1. [audio]
+  /// Fills scratch.slots, scratch.envelopes and scratch.lfos for samples first..first+n-1. [audio]
   void render(const PatchProgram& patch, const NoteContext& note, const TempoClock& tempo,
               std::int64_t first, std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT;
+
+  /// What `other` would render next, without it: only what the patch has is copied. [audio]
+  void look_ahead_from(const Modulation& other, const PatchProgram& patch) KNOTWAVE_RT;
+  /// No envelope runs and no source glides any more from `first` on, so that all but LFOs stays as
+  /// it is. [audio]
+  bool is_still(const PatchProgram& patch, std::int64_t first) const KNOTWAVE_RT;
 
   const dsp::Envelope& envelope(int index) const KNOTWAVE_RT {
     return envelopes_[static_cast<std::size_t>(index)];

@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: MIT
 // The song position in quarter notes at a sample. All [audio].
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "knotwave/base/time.h"
 
 namespace knotwave::engine {
+
+/// `samples` after `from`, floored to 2^-32 sample; never before it, and 2^40 samples at most.
+inline base::SampleTime time_after(base::SampleTime from, double samples) KNOTWAVE_RT {
+  const double wait = samples > 0 ? std::min(samples, 0x1p40) : 0.0;
+  const double whole = std::floor(wait);
+  const std::uint64_t fraction =
+      std::uint64_t{from.fraction} + static_cast<std::uint64_t>((wait - whole) * 0x1p32);
+  return {
+      from.sample + static_cast<std::int64_t>(whole) + static_cast<std::int64_t>(fraction >> 32),
+      static_cast<std::uint32_t>(fraction)};
+}
 
 /// Position is a function of the sample since the last tempo change; only changes are summed.
 class TempoClock {
@@ -17,11 +30,22 @@ class TempoClock {
   /// A new tempo from `time` on; 0 microseconds is ignored.
   void set_tempo(base::SampleTime time, std::uint32_t microseconds_per_quarter) KNOTWAVE_RT {
     if (microseconds_per_quarter == 0) return;
-    origin_beats_ +=
-        (base::samples_since(origin_, time.sample) + static_cast<double>(time.fraction) * 0x1p-32) *
-        beats_per_sample();
-    origin_ = time;
+    set_position(time, beats_at(time));
     microseconds_ = microseconds_per_quarter;
+  }
+  /// The song is somewhere else from `time` on.
+  void set_position(base::SampleTime time, double beats) KNOTWAVE_RT {
+    origin_beats_ = beats;
+    origin_ = time;
+  }
+  /// When the song comes to `beats` while the tempo stays; not before the last change.
+  base::SampleTime time_at(double beats) const KNOTWAVE_RT {
+    return time_after(origin_, (beats - origin_beats_) * (microseconds_ * rate_hz_ / 1e6));
+  }
+  double beats_at(base::SampleTime time) const KNOTWAVE_RT {
+    return origin_beats_ + (base::samples_since(origin_, time.sample) +
+                            static_cast<double>(time.fraction) * 0x1p-32) *
+                               beats_per_sample();
   }
   double beats_at(std::int64_t sample) const KNOTWAVE_RT {
     return origin_beats_ + base::samples_since(origin_, sample) * beats_per_sample();

@@ -85,6 +85,14 @@ class Envelope {
   /// How far along the curve it is at `sample`, at or after the last one rendered: 0..1 of the
   /// domain. [audio]
   double place_at(const EnvelopeProgram& program, std::int64_t sample) const KNOTWAVE_RT;
+  /// How far it has run since the last gate, at a time from then on: where it would be were there
+  /// no sustain place, no loop and no end; and its step. For those who watch for places. [audio]
+  double unfolded_u(base::SampleTime time) const KNOTWAVE_RT {
+    return place_.u + (static_cast<double>(time.sample - place_.sample) +
+                       static_cast<double>(time.fraction) * 0x1p-32) *
+                          u_per_sample_;
+  }
+  double u_per_sample() const KNOTWAVE_RT { return u_per_sample_; }
   /// Times p1 was limited to the hull, and a brake played the rest of the slope. [audio]
   int limited_joins() const KNOTWAVE_RT { return limited_joins_; }
 

@@ -84,6 +84,11 @@ class ChannelState {
 
   /// 0..1. Controllers 0..31 have 14 bits once their fine half (32..63) was heard, else 7.
   double control(int controller) const KNOTWAVE_RT;
+  /// 0..127, as it was sent: of controllers 0..31 the coarse half.
+  int seven_bits(int controller) const KNOTWAVE_RT {
+    const auto index = static_cast<std::size_t>(controller & 127);
+    return index >= 32 && index < 64 ? fine_[index - 32] : coarse_[index];
+  }
   /// -1..1; 8192 is exactly 0, 0 exactly -1 and 16383 exactly 1.
   double bend() const KNOTWAVE_RT;
   /// RPN 0 in semitones, or `fallback` while none was heard.

@@ -16,7 +16,7 @@ namespace knotwave::engine {
 struct EnvelopePlayerConfig {
   double rate_hz = 48000;  ///< 8000..768000
   std::uint64_t seed = 1;
-  int most_ahead_samples = 256;  ///< what predict() may be asked for
+  int most_ahead_samples = 256;  ///< what predict() may be asked for, 0..65536
 };
 
 /// A note on or off for the patch's NoteOutput, a note or gate of a place event: what must go out
@@ -30,8 +30,10 @@ struct PlayerMessage {
 
 class EnvelopePlayer {
  public:
-  static constexpr std::size_t kMostSamples = 64;   ///< of one render()
-  static constexpr std::size_t kMostMessages = 64;  ///< of one event or one render()
+  static constexpr std::size_t kMostSamples = 64;  ///< of one render()
+  static constexpr int kMostAhead = 65536;
+  /// Between two takes: every key of every channel let go, and 256 of places.
+  static constexpr std::size_t kMostMessages = 2304;
 
   /// [control] `program` must outlive the player. Errors: value_out_of_range.
   static Result<std::unique_ptr<EnvelopePlayer>> create(const EnvelopePlayerConfig& config,
@@ -39,15 +41,20 @@ class EnvelopePlayer {
   ~EnvelopePlayer();
 
   /// Everything that happens from now() on: notes, controllers, tempo (Event::Kind::tempo), start,
-  /// stop, song position. Times rise; none is at or past a sample already rendered by more than it
-  /// is heard late. [audio]
+  /// stop, song position. Times rise; an event before now() is heard now. [audio]
+  ///
+  /// Start (FA) puts the song at 0: at the first clock (F8) that follows where clocks came within
+  /// the last second, else at once. Stop (FC) closes the gate of a clock division, Continue (FB)
+  /// goes on from there or from the last song position (F2). A clock or loop that release_all()
+  /// ended begins again with Start or Continue. install_bank and set_target are left out.
   void handle(const Event& event) KNOTWAVE_RT;
   /// The next n <= kMostSamples samples; now() grows by n. An event within the block must have been
   /// handled before: split blocks at events. Any split gives the same bits. [audio]
   void render(std::size_t n) KNOTWAVE_RT;
   /// What would come after the last sample rendered if nothing happened: n <= most_ahead_samples
-  /// more values behind those of render(). State does not change. [audio] Costs as much as n
-  /// samples of render().
+  /// more values behind those of render(), the openings of a clock division among them. State does
+  /// not change. [audio] Costs as much as n samples of render() and a copy of what the patch has of
+  /// envelopes, LFOs and maps, for every voice that has begun.
   void predict(std::size_t n) KNOTWAVE_RT;
 
   /// Voices 0..voices()-1 are the patch's polyphony, one with mono and legato and without notes.
@@ -55,7 +62,7 @@ class EnvelopePlayer {
   struct VoiceState {
     bool is_active = false;  ///< its gate is open or an envelope still runs
     bool has_begun = false;  ///< some gate opened since the start
-    int channel = 0;         ///< 1..16: of the note, or what NoteOutput::mpe gave it
+    int channel = 1;         ///< 1..16: of the note, or what NoteOutput::mpe gave it
     int key = 60;
     std::uint64_t note = 0;  ///< counts up with every gate: the largest is the newest
   };
@@ -69,11 +76,13 @@ class EnvelopePlayer {
   std::span<const PlayerMessage> take_messages() KNOTWAVE_RT;
 
   std::int64_t now() const KNOTWAVE_RT;  ///< the next sample to be rendered
-  /// No gate is open and no envelope or free LFO that an output hears runs: values stay. [audio]
+  /// No gate is open, no clock opens one, and nothing that an output hears runs or glides: values
+  /// stay. LFOs never stand still once a gate was open. [audio]
   bool is_still() const KNOTWAVE_RT;
   /// Where an envelope of a voice is, for those who show it: 0..1. [audio]
   double place(int voice, int envelope) const KNOTWAVE_RT;
-  /// Closes every gate now. [audio]
+  /// Closes every gate now, lets go the notes that went out, and stays closed to clock and loop.
+  /// [audio]
   void release_all() KNOTWAVE_RT;
 
  private:

@@ -6,9 +6,13 @@
 namespace knotwave::io {
 namespace {
 
-// Bytes of a message of this status, itself included; 0 where MIDI defines none or any number.
-// Source: MIDI 1.0 Detailed Specification 4.2, table 1.
-constexpr std::size_t message_size(std::uint8_t status) KNOTWAVE_RT {
+bool are_data(std::span<const std::uint8_t> bytes) KNOTWAVE_RT {
+  return std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte < 0x80; });
+}
+
+}  // namespace
+
+std::size_t message_size(std::uint8_t status) KNOTWAVE_RT {
   switch (status & 0xF0) {
     case 0x80:
     case 0x90:
@@ -40,12 +44,6 @@ constexpr std::size_t message_size(std::uint8_t status) KNOTWAVE_RT {
       return 0;
   }
 }
-
-bool are_data(std::span<const std::uint8_t> bytes) KNOTWAVE_RT {
-  return std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte < 0x80; });
-}
-
-}  // namespace
 
 bool read_complete_midi(std::span<const std::uint8_t> bytes, base::MidiEvent& event) KNOTWAVE_RT {
   if (bytes.empty()) return false;

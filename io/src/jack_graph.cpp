@@ -7,6 +7,7 @@
 #include <jack/midiport.h>
 
 #include "complete_midi.h"
+#include "jack_cycle.h"
 
 namespace knotwave::io {
 namespace {
@@ -91,15 +92,7 @@ int JackGraph::process(jack_nframes_t frames) KNOTWAVE_RT {
   for (std::size_t c = 0; c < outputs_.size(); ++c) {
     buffers_[c] = static_cast<float*>(jack_port_get_buffer(outputs_[c], frames));
   }
-  // JACK's clock need not be ours, but the age of the cycle is the same by both.
-  jack_nframes_t frame_time = 0;
-  jack_time_t begin_us = 0, next_us = 0;
-  float period_us = 0;
-  const bool is_known =
-      jack_get_cycle_times(client(), &frame_time, &begin_us, &next_us, &period_us) == 0;
-  if (!is_known) frame_time = jack_last_frame_time(client());
-  const auto age_us = is_known ? static_cast<std::int64_t>(jack_get_time() - begin_us) : 0;
-  clock_.advance({frame_time, age_us, frames}, steady_clock_ns());
+  follow_cycle(client(), frames, clock_);
   const std::size_t events = read_midi(frames);
   pump_.run({.frame = clock_.frame(),
              .time_ns = clock_.time_ns(),

@@ -25,8 +25,9 @@ class OscListener {
 };
 
 struct OscPlace {
-  std::string host = "127.0.0.1";  ///< whose addresses may send: this machine only, or 0.0.0.0
-  int port = 0;                    ///< 1..65535; 0: any free one
+  std::string host = "127.0.0.1";  ///< input: whose addresses may send (this machine only, or
+                                   ///< 0.0.0.0); output: the receiver's
+  int port = 0;                    ///< 1..65535; 0: any free one (input)
 };
 /// "9000", "0.0.0.0:9000", "[::1]:9000". Errors: usage.
 Result<OscPlace> parse_osc_place(std::string_view text);

@@ -4,10 +4,13 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <optional>
+#include <mutex>
+#include <vector>
 
 #include <jack/jack.h>
 #include <jack/midiport.h>
+
+#include "knotwave/io/midi_queue.h"
 
 #include "complete_midi.h"
 #include "jack_cycle.h"
@@ -15,7 +18,6 @@
 #include "library_silence.h"
 #include "midi_backend.h"
 #include "midi_placement.h"
-#include "midi_queue.h"
 #include "patient_call.h"
 #include "rtmidi_port.h"
 
@@ -129,15 +131,43 @@ bool JackMidiGraph::place(void* buffer, const MidiQueue::Message& message) KNOTW
   return true;
 }
 
+using Graph = std::shared_ptr<JackMidiGraph>;
+
+/// Clients that could not be closed while the server hung; the next call that gets through does it,
+/// or they would keep everyone from a server that comes after.
+class LeftBehind {
+ public:
+  void add(Graph graph) {
+    const std::lock_guard lock(mutex_);
+    graphs_.push_back(std::move(graph));
+  }
+  void close() {
+    for (;;) {
+      std::vector<Graph> graphs;
+      const std::unique_lock lock(mutex_);
+      graphs.swap(graphs_);
+      if (graphs.empty()) return;
+    }
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Graph> graphs_;
+};
+
+LeftBehind& left_behind() {
+  static auto* const graphs = new LeftBehind;  // outlives calls that hang
+  return *graphs;
+}
+
 class JackMidiOutput : public MidiOutput {
  public:
-  explicit JackMidiOutput(std::shared_ptr<JackMidiGraph> graph)
-      : graph_(std::make_unique<std::shared_ptr<JackMidiGraph>>(std::move(graph))),
-        own_("jack", this->graph().own_name()),
-        name_(this->graph().name()) {}
-  // The graph goes with the call that closes it, however late, and stays where that is refused.
+  explicit JackMidiOutput(Graph graph)
+      : graph_(std::move(graph)), own_("jack", graph_->own_name()), name_(graph_->name()) {}
+  // Whoever is refused leaves its client to the call that hangs: that closes all when it goes on.
   ~JackMidiOutput() override {
-    jack_calls().run(kClosesWithin, [graph = graph_.release()] { delete graph; });
+    left_behind().add(std::move(graph_));
+    jack_calls().run(kClosesWithin, [] { left_behind().close(); });
   }
   JackMidiOutput(const JackMidiOutput&) = delete;
   JackMidiOutput& operator=(const JackMidiOutput&) = delete;
@@ -146,29 +176,27 @@ class JackMidiOutput : public MidiOutput {
     base::MidiEvent event;
     if (message.size() > kLongestMidi) return too_long(message.size());
     if (!read_complete_midi(message, event)) return no_message();
-    if (!graph().is_alive()) return fail(ErrorCode::io_failed, "the JACK server has gone");
+    if (!graph_->is_alive()) return fail(ErrorCode::io_failed, "the JACK server has gone");
     if (send_at(event, steady_clock_ns())) return {};
     return fail(ErrorCode::io_failed, "the JACK server does not take what is sent");
   }
   bool is_timed() const noexcept override { return true; }
   bool send_at(const base::MidiEvent& event, std::int64_t due_ns) KNOTWAVE_RT override {
-    return graph().queue().push(event, due_ns);
+    return graph_->queue().push(event, due_ns);
   }
-  bool is_done() const noexcept override { return graph().queue().is_empty(); }
-  bool exists() override { return graph().is_alive() && graph().has(name_); }
+  bool is_done() const noexcept override { return graph_->queue().is_empty(); }
+  bool exists() override { return graph_->is_alive() && graph_->has(name_); }
   const std::string& api() const override { return api_; }
   const std::string& name() const override { return name_; }
 
  private:
-  JackMidiGraph& graph() const noexcept { return **graph_; }
-
-  std::unique_ptr<std::shared_ptr<JackMidiGraph>> graph_;  ///< held so that it can be left behind
+  Graph graph_;
   OwnOutput own_;
   std::string api_ = "jack", name_;
 };
 
 struct Attempt {
-  std::shared_ptr<JackMidiGraph> graph;
+  Graph graph;
   Result<void> outcome;
 };
 
@@ -179,6 +207,7 @@ Result<std::unique_ptr<MidiOutput>> open_jack_midi_output(const MidiOutputConfig
   const auto attempt = std::make_shared<Attempt>();
   attempt->graph = std::make_shared<JackMidiGraph>(config.lateness);
   const auto call = jack_calls().run(kServerAnswersWithin, [attempt, config] {
+    left_behind().close();
     attempt->outcome = attempt->graph->enter(config);
     if (!attempt->outcome) attempt->graph.reset();
   });

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <optional>
 
+#include "knotwave/io/midi_queue.h"
+
 #include "audio_backend.h"
 #include "complete_midi.h"
 #include "midi_backend.h"
-#include "midi_queue.h"
 #include "rtmidi_port.h"
 
 namespace knotwave::io {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "midi_queue.h"
+#include "knotwave/io/midi_queue.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@ MidiQueue::MidiQueue(std::size_t messages, std::size_t sysex_bytes)
     : items_(messages), sysex_(sysex_bytes), bytes_(kLongestMidi) {}
 
 bool MidiQueue::push(const base::MidiEvent& event, std::int64_t due_ns) KNOTWAVE_RT {
-  Item item{.due_ns = due_ns, .bytes = {event.bytes[0], event.bytes[1], event.bytes[2]}};
+  Item item{.due_ns = due_ns, .event = event};
   const bool is_sysex = event.bytes[0] == 0xF0;
   if (!is_sysex && message_size(event.bytes[0]) == 0) return false;
   if (items_.size() == items_.capacity()) return false;
@@ -34,13 +34,14 @@ const MidiQueue::Message* MidiQueue::front() KNOTWAVE_RT {
   Item item;
   if (!items_.pop(item)) return nullptr;
   const bool is_sysex = item.size > 0;
-  const std::size_t size = is_sysex ? item.size : message_size(item.bytes[0]);
+  const std::size_t size = is_sysex ? item.size : message_size(item.event.bytes[0]);
   if (is_sysex) {
     sysex_.read(std::span(bytes_).first(size));
   } else {
-    std::copy_n(item.bytes, size, bytes_.begin());
+    std::copy_n(item.event.bytes, size, bytes_.begin());
   }
-  front_ = {item.due_ns, std::span<const std::uint8_t>(bytes_).first(size)};
+  front_ = {item.due_ns, std::span<const std::uint8_t>(bytes_).first(size), item.event};
+  if (is_sysex) front_.event.sysex = bytes_.data() + 1;
   has_front_ = true;
   return &front_;
 }

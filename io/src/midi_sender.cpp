@@ -16,9 +16,7 @@
 #include <time.h>
 
 #include "knotwave/io/audio_device.h"
-
-#include "complete_midi.h"
-#include "midi_queue.h"
+#include "knotwave/io/midi_queue.h"
 
 namespace knotwave::io {
 namespace {
@@ -69,9 +67,8 @@ std::int64_t serve(Port& port) {
     if (!is_timed && message->due_ns > now_ns) return message->due_ns;
     bool is_sent = false;
     if (is_timed) {
-      base::MidiEvent event;
-      is_sent = read_complete_midi(message->bytes, event);
-      if (is_sent && !output->send_at(event, message->due_ns)) return now_ns + MidiSender::kWakeNs;
+      is_sent = output->send_at(message->event, message->due_ns);
+      if (!is_sent) return now_ns + MidiSender::kWakeNs;
     } else if (output != nullptr) {
       port.lateness->add(now_ns - message->due_ns);
       const auto done = output->send(message->bytes);
@@ -169,8 +166,11 @@ MidiSender::~MidiSender() {
   const bool has_ended =
       state_->changed.wait_for(lock, kThreadEndsWithin, [this] { return state_->has_ended; });
   lock.unlock();
-  if (!has_ended) return state_->thread.detach();  // what it hangs in stays with it
-  state_->thread.join();
+  if (has_ended) {
+    state_->thread.join();
+  } else {
+    state_->thread.detach();  // what it hangs in stays with it
+  }
 }
 
 bool MidiSender::push(int port, const base::MidiEvent& event, std::int64_t due_ns) KNOTWAVE_RT {

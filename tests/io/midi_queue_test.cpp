@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What carries messages to their time: the queue, the place in a cycle, the count of what was late.
-#include "midi_queue.h"
+#include "knotwave/io/midi_queue.h"
 
 #include <algorithm>
 #include <random>

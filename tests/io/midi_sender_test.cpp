@@ -107,8 +107,11 @@ class MidiSenders : public testing::Test {
     sender_ = std::move(*opened);
   }
   bool is_so(const std::function<bool()>& is_so) {
-    for (int i = 0; i < 5000 && !is_so(); ++i) std::this_thread::sleep_for(1ms);
-    return is_so();
+    for (int i = 0; i < 5000; ++i) {
+      if (is_so()) return true;
+      std::this_thread::sleep_for(1ms);
+    }
+    return false;
   }
   bool is_sent(std::size_t messages, std::size_t port = 0) {
     return is_so([&] { return cables_[port]->sent().size() >= messages; });

@@ -19,8 +19,9 @@ struct MidiOutputConfig {
   std::string api;
   std::string port;  ///< a name, or part of one, in any case; empty: a port of our own
   std::string client_name = "Knotwave";
-  std::string own_name = "out";        ///< of our port
-  std::shared_ptr<Lateness> lateness;  ///< where an output that is_timed() counts; may be null
+  std::string own_name = "out";  ///< of our port
+  std::shared_ptr<Lateness> lateness =
+      nullptr;  ///< where an output that is_timed() counts; may be null
 };
 
 /// [control] One thread, but for exists(). midi_sender.h makes a thread for it.

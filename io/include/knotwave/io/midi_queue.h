@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Complete messages with the time they are due, from one thread to another, wait-free; system
+// Complete messages with a time, from one thread to another, wait-free; system
 // exclusive is copied.
 #pragma once
 #include <atomic>
@@ -23,8 +23,10 @@ class MidiQueue {
   struct Message {
     std::int64_t due_ns = 0;
     std::span<const std::uint8_t> bytes;  ///< status first, system exclusive with F0 and F7
+    base::MidiEvent event;                ///< the same
   };
 
+  /// [control]
   MidiQueue(std::size_t messages, std::size_t sysex_bytes);
 
   /// False: no room, no message of MIDI's, or longer than kLongestMidi; nothing was taken.
@@ -41,7 +43,7 @@ class MidiQueue {
  private:
   struct Item {
     std::int64_t due_ns = 0;
-    std::uint8_t bytes[3] = {0, 0, 0};
+    base::MidiEvent event;
     std::uint32_t size = 0;  ///< of system exclusive with F0 and F7, which stands in sysex_
   };
   base::SpscRing<Item> items_;

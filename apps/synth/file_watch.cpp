@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::int64_t kQuietNs = 30'000'000;
+constexpr std::int64_t kMostTouchedNs = 200'000'000;
 constexpr std::int64_t kLookNs = 1'000'000'000;
 constexpr std::uint32_t kSaved = IN_CLOSE_WRITE | IN_MOVED_TO;
 
@@ -111,10 +112,14 @@ bool FileWatch::is_changed(std::int64_t now_ns, bool any_in_folders) {
     is_seen = look_at_files() || is_seen;
   }
   if (is_seen) {
+    if (!is_touched_) first_touched_ns_ = now_ns;
     is_touched_ = true;
     touched_ns_ = now_ns;
   }
-  if (!is_touched_ || now_ns - touched_ns_ < kQuietNs) return false;
+  if (!is_touched_) return false;
+  // Who saves without a pause is heard as well.
+  const bool is_quiet = now_ns - touched_ns_ >= kQuietNs;
+  if (!is_quiet && now_ns - first_touched_ns_ < kMostTouchedNs) return false;
   is_touched_ = false;
   return true;
 }

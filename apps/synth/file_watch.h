@@ -21,8 +21,9 @@ class FileWatch {
 
   /// These files and no others from now on.
   void watch(const std::vector<std::string>& paths);
-  /// Whether one of them was saved and none was touched for 30 ms since; then false until the next
-  /// time. With `any_in_folders`, every file in their folders counts.
+  /// Whether one of them was saved and none was touched for 30 ms since, or touches have gone on
+  /// for 0.2 s; then false until the next time. With `any_in_folders`, every file in their folders
+  /// counts.
   bool is_changed(std::int64_t now_ns, bool any_in_folders = false);
   /// For poll(); -1 without inotify.
   int descriptor() const { return inotify_; }
@@ -41,7 +42,7 @@ class FileWatch {
   int inotify_;
   std::map<int, std::string> folders_;  ///< by watch descriptor
   std::map<std::string, Signature> files_;
-  std::int64_t touched_ns_ = 0, looked_ns_ = 0;
+  std::int64_t first_touched_ns_ = 0, touched_ns_ = 0, looked_ns_ = 0;
   bool is_touched_ = false;
 };
 

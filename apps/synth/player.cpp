@@ -16,7 +16,8 @@ constexpr std::int64_t kTryEveryNs = 500'000'000;
 /// A call that hangs in a JACK server that stands still comes back with it, or when it is killed.
 constexpr std::int64_t kJackPatienceNs = 10'000'000'000;
 constexpr double kFadeSeconds = 0.05;
-constexpr std::size_t kMostRecords = 2'000'000;  ///< some 130 MB
+constexpr std::size_t kMostRecords = 2'000'000;                ///< some 130 MB
+constexpr std::size_t kMostBankBytes = std::size_t{64} << 20;  ///< every save is another bank
 
 std::string device_words(const io::AudioFormat& format) {
   return format.api + (format.device.empty() ? "" : ": " + format.device) + ", " +
@@ -114,11 +115,15 @@ Result<void> Player::make_engine() {
   if (!live) return live.error();
   gate_.lead_to(nullptr);
   live_ = *std::move(live);
-  journal_ = {};
+  begin_journal();
   is_journal_whole_ = true;
-  records_held_ = 0;
   gate_.lead_to(live_.get());
   return {};
+}
+
+void Player::begin_journal() {
+  journal_ = {};
+  records_held_ = banks_counted_ = bank_bytes_ = 0;
 }
 
 void Player::process(const io::AudioBlock& block) KNOTWAVE_RT {
@@ -209,9 +214,13 @@ const engine::Journal& Player::journal() {
   for (; records_held_ < journal_.records.size(); ++records_held_) {
     held_.add(journal_.records[records_held_]);
   }
-  if (journal_.records.size() > kMostRecords) {
-    journal_ = {};
-    records_held_ = 0;
+  for (; banks_counted_ < journal_.banks.size(); ++banks_counted_) {
+    for (const engine::FileText& text : journal_.banks[banks_counted_].files) {
+      bank_bytes_ += text.bytes.size();
+    }
+  }
+  if (journal_.records.size() > kMostRecords || bank_bytes_ > kMostBankBytes) {
+    begin_journal();
     is_journal_whole_ = false;
   }
   return journal_;

@@ -79,6 +79,7 @@ class Player final : private io::AudioClient, private io::MidiListener {
 
   Result<void> open_stream(const PlayerConfig& config);
   Result<void> make_engine();
+  void begin_journal();
   Result<void> open_substitute();
   void lose(const std::string& reason, std::vector<std::string>& told);
   void leave_device(std::vector<std::string>& told);
@@ -97,7 +98,8 @@ class Player final : private io::AudioClient, private io::MidiListener {
   std::unique_ptr<engine::LiveEngine> live_;
   engine::Journal journal_;
   bool is_journal_whole_ = true;
-  std::size_t records_held_ = 0;  ///< of the journal, which held_ knows
+  std::size_t records_held_ = 0;                    ///< of the journal, which held_ knows
+  std::size_t banks_counted_ = 0, bank_bytes_ = 0;  ///< of the journal
   HeldState held_;
   std::unique_ptr<io::AudioStream> stream_;
   std::unique_ptr<io::AudioStream> ending_;  ///< of another rate, waits for end_engine()

@@ -62,6 +62,19 @@ TEST_F(FileWatches, EveryWayToSaveIsSeen) {
   EXPECT_TRUE(happens(is_seen)) << "removed and written";
 }
 
+TEST_F(FileWatches, WhoSavesWithoutAPauseIsSeen) {
+  FileWatch watch;
+  watch.watch({file("small.toml")});
+  const std::int64_t begin_ns = now_ns();
+  int seen = 0;
+  for (std::int64_t ms = 0; ms < 1000; ms += 10) {  // by a clock of the test's own
+    overwrite("small.toml", std::to_string(ms));
+    seen += watch.is_changed(begin_ns + ms * 1'000'000) ? 1 : 0;
+  }
+  EXPECT_GE(seen, 4);
+  EXPECT_LE(seen, 5);
+}
+
 TEST_F(FileWatches, BothEndsOfALinkAreWatched) {
   std::filesystem::create_directory(file("far"));
   overwrite("far/patch.toml", "a");

@@ -6,6 +6,8 @@
 
 #include "knotwave/base/fp_state.h"
 
+#include "futex.h"
+
 namespace knotwave::engine {
 
 Result<std::unique_ptr<Workers>> Workers::start(int threads) {
@@ -27,7 +29,7 @@ Result<std::unique_ptr<Workers>> Workers::start(int threads) {
 Workers::~Workers() {
   stop_.store(true, std::memory_order_relaxed);
   round_.fetch_add(1, std::memory_order_release);
-  round_.notify_all();
+  wake_all(round_);
   for (std::thread& thread : pool_) thread.join();
 }
 
@@ -36,11 +38,10 @@ void Workers::run(Job job, void* context) noexcept {
   context_ = context;
   still_working_.store(static_cast<std::uint32_t>(pool_.size()), std::memory_order_relaxed);
   round_.fetch_add(1, std::memory_order_release);
-  round_.notify_all();
+  wake_all(round_);
   job(context, 0);
-  for (std::uint32_t left = still_working_.load(std::memory_order_acquire); left != 0;
-       left = still_working_.load(std::memory_order_acquire)) {
-    still_working_.wait(left, std::memory_order_acquire);
+  for (std::uint32_t left = still_working_.load(std::memory_order_acquire); left != 0;) {
+    left = wait_while(still_working_, left);
   }
 }
 
@@ -48,11 +49,10 @@ void Workers::serve(int thread) noexcept {
   const base::FpStateGuard state;
   std::uint32_t seen = 0;
   for (;;) {
-    round_.wait(seen, std::memory_order_acquire);
-    seen = round_.load(std::memory_order_acquire);
+    seen = wait_while(round_, seen);
     if (stop_.load(std::memory_order_relaxed)) return;
     job_(context_, thread);
-    if (still_working_.fetch_sub(1, std::memory_order_acq_rel) == 1) still_working_.notify_one();
+    if (still_working_.fetch_sub(1, std::memory_order_acq_rel) == 1) wake_all(still_working_);
   }
 }
 

@@ -25,8 +25,8 @@ class Workers {
   Workers& operator=(const Workers&) = delete;
 
   int threads() const KNOTWAVE_RT { return static_cast<int>(pool_.size()) + 1; }
-  /// job(context, 0) here and job(context, t) on thread t, until all are done. One futex wake and
-  /// at most one futex wait. [audio, offline]
+  /// job(context, 0) here and job(context, t) on thread t, until all are done. One futex wake and,
+  /// where the others take longer, a futex wait; no other system call. [audio]
   void run(Job job, void* context) noexcept;
 
  private:

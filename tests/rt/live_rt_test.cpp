@@ -125,12 +125,19 @@ class Control {
   std::thread thread_;
 };
 
-class LiveEngineInTheGate : public testing::TestWithParam<Gate> {};
+struct Way {
+  const char* name;
+  Gate gate;
+  int threads;
+  friend void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
+};
+class LiveEngineInTheGate : public testing::TestWithParam<Way> {};
 
 TEST_P(LiveEngineInTheGate, EveryShippedPatchInAStormOfMessagesTargetsAndBanks) {
   auto banks = shipped_banks();
   ASSERT_GT(banks.size(), 40u);
-  const auto live = LiveEngine::create({.engine = {.max_voices = 24}}, std::move(banks.back()));
+  const auto live = LiveEngine::create(
+      {.engine = {.max_voices = 24, .threads = GetParam().threads}}, std::move(banks.back()));
   ASSERT_TRUE(live) << live.error().to_string();
   banks.pop_back();
   (*live)->set_tap(true);
@@ -141,7 +148,7 @@ TEST_P(LiveEngineInTheGate, EveryShippedPatchInAStormOfMessagesTargetsAndBanks) 
   Control warm_up(**live, std::move(banks));
   std::unique_ptr<Control> control;
   const GateReport report = run_in_gate(
-      GetParam(), [&] { play(*control); },
+      GetParam().gate, [&] { play(*control); },
       [&] {
         play(warm_up);
         control = std::make_unique<Control>(**live, shipped_banks());
@@ -156,10 +163,12 @@ TEST_P(LiveEngineInTheGate, EveryShippedPatchInAStormOfMessagesTargetsAndBanks) 
   EXPECT_EQ((*live)->status().journal_dropped, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, LiveEngineInTheGate, testing::Values(Gate::sanitizer, Gate::system),
-                         [](const auto& gate) {
-                           return gate.param == Gate::sanitizer ? "sanitizer" : "system";
-                         });
+INSTANTIATE_TEST_SUITE_P(All, LiveEngineInTheGate,
+                         testing::Values(Way{"sanitizer", Gate::sanitizer, 1},
+                                         Way{"system", Gate::system, 1},
+                                         Way{"sanitizer_two_threads", Gate::sanitizer, 2},
+                                         Way{"system_two_threads", Gate::parallel, 2}),
+                         [](const auto& way) { return std::string(way.param.name); });
 
 }  // namespace
 }  // namespace knotwave::rt

@@ -46,21 +46,23 @@ void on_refused_call(int, siginfo_t* info, void* context) {
 #endif
 }
 
-/// Refuses every system call of this thread but the few the gate itself needs.
-bool install_filter() {
+/// Refuses every system call of this thread but the few the gate itself needs, and futexes where
+/// they are listed.
+bool install_filter(bool may_use_futexes) {
 #if !defined(__x86_64__) && !defined(__aarch64__)
   return false;
 #endif
-  constexpr std::array kAllowed = {SYS_rt_sigreturn, SYS_exit, SYS_exit_group, SYS_getrusage};
-  std::array<sock_filter, kAllowed.size() + 3> program{};
+  const std::array allowed = {SYS_rt_sigreturn, SYS_exit, SYS_exit_group, SYS_getrusage,
+                              may_use_futexes ? SYS_futex : SYS_exit};
+  std::array<sock_filter, allowed.size() + 3> program{};
   program[0] = BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr));
-  for (std::size_t i = 0; i < kAllowed.size(); ++i) {
-    const auto to_allow = static_cast<__u8>(kAllowed.size() - i);
+  for (std::size_t i = 0; i < allowed.size(); ++i) {
+    const auto to_allow = static_cast<__u8>(allowed.size() - i);
     program[i + 1] =
-        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<__u32>(kAllowed[i]), to_allow, 0);
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<__u32>(allowed[i]), to_allow, 0);
   }
-  program[kAllowed.size() + 1] = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP);
-  program[kAllowed.size() + 2] = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
+  program[allowed.size() + 1] = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP);
+  program[allowed.size() + 2] = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
   const sock_fprog filter = {static_cast<unsigned short>(program.size()), program.data()};
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return false;
   return ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &filter) == 0;
@@ -90,18 +92,18 @@ GateReport run_sanitized(const std::function<void()>& work) {
   return report;
 }
 
-GateReport run_filtered(const std::function<void()>& work) {
+GateReport run_filtered(const std::function<void()>& work, bool may_use_futexes) {
   GateReport report;
   rusage before{};
   rusage after{};
   ::getrusage(RUSAGE_THREAD, &before);  // once before, so that what it touches is there
-  report.watched = install_filter();
+  report.watched = install_filter(may_use_futexes);
   ::getrusage(RUSAGE_THREAD, &before);
   armed = 1;
   work();
   armed = 0;
   ::getrusage(RUSAGE_THREAD, &after);
-  report.voluntary_waits = after.ru_nvcsw - before.ru_nvcsw;
+  if (!may_use_futexes) report.voluntary_waits = after.ru_nvcsw - before.ru_nvcsw;
   report.page_faults = after.ru_minflt - before.ru_minflt + after.ru_majflt - before.ru_majflt;
   return report;
 }
@@ -122,12 +124,14 @@ void* run_gated(void* context) {
     thread.report = run_sanitized(thread.work);
     return nullptr;
   }
-  thread.report = run_filtered(thread.work);
+  thread.report = run_filtered(thread.work, thread.gate == Gate::parallel);
   ::syscall(SYS_exit, 0);
   return nullptr;
 }
 
 }  // namespace
+
+bool join_parallel_gate() { return install_filter(true); }
 
 GateReport run_in_gate(Gate gate, const std::function<void()>& work,
                        const std::function<void()>& prepare) {

@@ -4,7 +4,9 @@
 //   sanitizer: the RealtimeSanitizer runtime ends the program at malloc, free, locks, files, sleeps
 //              and throw;
 //   system:    a seccomp filter on the thread refuses and counts every system call, and getrusage
-//              counts voluntary waits and page faults.
+//              counts voluntary waits and page faults;
+//   parallel:  the same, but futexes are listed, and so are the waits for them: what an engine of
+//              several threads may use.
 // See docs/realtime-rules.md. Source of the sanitizer's interface: LLVM compiler-rt,
 // rtsan_interface.h.
 #pragma once
@@ -13,7 +15,7 @@
 
 namespace knotwave::rt {
 
-enum class Gate { sanitizer, system };
+enum class Gate { sanitizer, system, parallel };
 
 struct GateReport {
   bool watched = false;      ///< the sanitizer's runtime is linked, or the filter was installed
@@ -25,6 +27,10 @@ struct GateReport {
   /// Empty when nothing was found, else one line.
   std::string findings() const;
 };
+
+/// From here on this thread is filtered as in Gate::parallel, for good, and its refused calls are
+/// counted by the run_in_gate() under way. False: no filter was installed.
+bool join_parallel_gate();
 
 /// Calls `prepare` and then `work` on a thread of its own; only `work` is inside the gate. What
 /// work() touches first costs a page fault: let prepare() touch it. Not reentrant.

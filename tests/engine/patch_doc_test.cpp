@@ -14,67 +14,13 @@
 
 #include "knotwave/engine/bank.h"
 
+#include "engine/format_page.h"
+
 namespace knotwave::engine {
 namespace {
 
-namespace fs = std::filesystem;
-
 const std::string kRoot = KNOTWAVE_SOURCE_DIR;
-
-std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  EXPECT_TRUE(file) << path;
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::string without_ticks(std::string text) {
-  std::erase(text, '`');
-  const auto first = text.find_first_not_of(' ');
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
-// The first two columns of the table rows below each heading that begin with a word in ticks.
-struct Row {
-  std::string key, example;
-};
-std::map<std::string, std::vector<Row>> documented() {
-  std::map<std::string, std::vector<Row>> sections;
-  std::istringstream page(read_text(kRoot + "/docs/patch-format.md"));
-  std::string heading;
-  for (std::string line; std::getline(page, line);) {
-    if (line.starts_with("#")) heading = without_ticks(line.substr(line.find(' ')));
-    if (!line.starts_with("| `")) continue;
-    std::istringstream cells(line.substr(2));
-    Row row;
-    std::getline(cells, row.key, '|');
-    std::getline(cells, row.example, '|');
-    row.key = without_ticks(row.key);
-    row.example = without_ticks(row.example);
-    sections[heading].push_back(row);
-  }
-  return sections;
-}
-
-// A document as sections of keys, in the order of a file.
-class Document {
- public:
-  void set(const std::string& section, const std::string& key, const std::string& value) {
-    sections_[section][key] = value;
-  }
-  void remove(const std::string& section, const std::string& key) { sections_[section].erase(key); }
-  std::string text() const {
-    std::string text;
-    for (const auto& [section, keys] : sections_) {
-      text += section.empty() ? "" : section + "\n";
-      for (const auto& [key, value] : keys) text += key + " = " + value + "\n";
-    }
-    return text;
-  }
-
- private:
-  std::map<std::string, std::map<std::string, std::string>> sections_;
-};
+const std::string kPage = kRoot + "/docs/patch-format.md";
 
 constexpr const char* kCurves =
     "[curves.ring]\ndegree = 1\npoints = [0, 1]\n"
@@ -165,7 +111,7 @@ TEST_F(PatchDocument, EveryDocumentedKeyIsAcceptedWithItsExample) {
       {"[[maps]]", "[[maps]]"}};
   const std::map<std::string, std::string> bank_sections = {{"The bank itself", ""},
                                                             {"[[programs]]", "[[programs]]"}};
-  auto sections = documented();
+  auto sections = documented(kPage);
   int keys = 0;
   for (const auto& [heading, section] : patch_sections) {
     EXPECT_FALSE(sections[heading].empty()) << heading;
@@ -193,7 +139,7 @@ TEST_F(PatchDocument, EveryDocumentedKeyIsAcceptedWithItsExample) {
 }
 
 TEST_F(PatchDocument, EveryDocumentedSourceAndTargetIsAccepted) {
-  auto sections = documented();
+  auto sections = documented(kPage);
   ASSERT_GE(sections["Sources"].size(), 17u);
   ASSERT_GE(sections["Targets"].size(), 23u);
   for (const Row& row : sections["Sources"]) {
@@ -231,7 +177,7 @@ TEST_F(PatchDocument, EveryDocumentedSourceAndTargetIsAccepted) {
 
 TEST_F(PatchDocument, EveryKeyTheReadersAskForIsDocumented) {
   std::set<std::string> known;
-  for (const auto& [heading, rows] : documented()) {
+  for (const auto& [heading, rows] : documented(kPage)) {
     for (const Row& row : rows) known.insert(row.key);
   }
   // The names of tables have headings instead of rows.
@@ -239,18 +185,11 @@ TEST_F(PatchDocument, EveryKeyTheReadersAskForIsDocumented) {
                             "filter", "envelopes", "lfos", "maps", "programs", "drums"}) {
     known.insert(table);
   }
-  const std::regex asks(
-      "(?:reader|top)\\.(?:number|integer|boolean|string|choice|numbers|node|table|array|required)"
-      "\\("
-      "\"(\\w+)\"|(?:curve_name|read_range)\\(reader, \"(\\w+)\"");
   int asked = 0;
   for (const auto& entry : fs::directory_iterator(kRoot + "/engine/src")) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with("patch_") && !name.starts_with("bank_reader")) continue;
-    const std::string source = read_text(entry.path().string());
-    for (std::sregex_iterator match(source.begin(), source.end(), asks), end; match != end;
-         ++match) {
-      const std::string key = (*match)[1].matched ? (*match)[1] : (*match)[2];
+    for (const std::string& key : keys_asked_for(entry.path().string())) {
       EXPECT_TRUE(known.contains(key)) << name << " reads '" << key << "'";
       ++asked;
     }

@@ -41,8 +41,8 @@ struct TriggerSpec {
 };
 
 enum class OutputKind {
-  control,     ///< CC `number`; bits 14: its low half first to CC number + 32
-  nrpn,        ///< parameter `number` by CC 99, 98, 6 and, bits 14, 38; 127/127 after
+  control,     ///< CC `number`; bits 14: its lower half follows by CC number + 32
+  nrpn,        ///< parameter `number` by CC 99, 98, 6 and, bits 14, 38; null (127/127) after
                ///< `kNrpnNullSeconds` without another value
   pitch_bend,  ///< 14 bits
   channel_pressure,

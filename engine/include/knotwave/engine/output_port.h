@@ -6,9 +6,15 @@
 // counts when its last byte has come. While the cable is free, a message is begun so that it has
 // come when the value crosses to the next step (half way between two). While it is not, the newest
 // value wins, and among lanes priority, then the one that waits longest. A receiver holds what it
-// heard until it hears more: where a value runs faster than its messages, the middle of what it
-// does meanwhile is sent, but for the lowest and the highest step of a lane, which are always
-// reached, and the last value, which is always sent.
+// heard until it hears more: where a value runs faster than its messages, the mean of what it does
+// meanwhile is sent, but for the lowest and the highest step that the lane has had, which are
+// always reached, and the last value, which is always sent.
+//
+// What a value of 14 bits costs: the upper half, then the lower; the lower alone while the upper is
+// the same; the upper alone while the lower was and is 0, which is how a value that runs by more
+// than 256 steps a pair is sent. NRPN is the same through CC 6 and 38, with CC 99 and 98 before
+// them unless the parameter is still selected, and CC 101 and 100 with 127 kNrpnNullSeconds after
+// the last value. Figures: docs/envelope-generator.md.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -23,7 +29,10 @@
 namespace knotwave::engine {
 
 inline constexpr double kDinBytesPerSecond = 3125;  ///< 31250 baud, 10 bits a byte (MIDI 1.0)
-inline constexpr double kUsbFrameSeconds = 0.001;   ///< USB MIDI 1.0 at full speed
+/// USB MIDI 1.0 at full speed: 16 events of 4 bytes fill a bulk packet of 64, and one packet goes
+/// in a frame. No 17 events are begun within a frame's time, and none of a lane follows another
+/// there.
+inline constexpr double kUsbFrameSeconds = 0.001;
 inline constexpr double kNrpnNullSeconds = 0.5;
 
 struct OutputPortConfig {
@@ -74,24 +83,29 @@ class OutputPort {
   static Result<std::unique_ptr<OutputPort>> create(const OutputPortConfig& config);
   ~OutputPort();
 
-  /// [control] Its number. Errors: value_out_of_range; capacity (above kMostLanes).
+  /// [control] Its number. bits is 14 for pitch bend and 7 for pressures, whatever the spec says.
+  /// Errors: value_out_of_range (also more than kMostLanes).
   Result<int> add_lane(const LaneSpec& spec);
   /// Which key or channel a lane is about from now on (a voice was given another note). [audio]
   void address(int lane, int channel, int key) KNOTWAVE_RT;
 
   /// How far after a block's end values must be known: what a message takes on the wire and the
-  /// next one after it, in samples, rounded up. 0 without a budget. [any]
+  /// next one after it (a USB frame; a sample), and 3 samples, of the lanes so far. [any]
   std::size_t ahead_samples() const KNOTWAVE_RT;
 
-  /// A message that must go out, before lanes of lower priority: notes, clock, thru. Times rise
-  /// within a priority. False: kMostWaiting were waiting, it is lost. System exclusive is kept by
-  /// reference until it is sent. [audio]
+  /// A message that must go out, before lanes of lower priority: notes, clock, thru. Times rise.
+  /// All but clocks keep their order, so one is as urgent as the most urgent behind it. False:
+  /// kMostWaiting were waiting, it is lost. System exclusive is kept by reference until it is sent.
+  /// Controllers that change what a lane's receiver holds (its other half, CC 6, 38, 96 to 101,
+  /// 121) are minded: the lane says it again. [audio]
   bool post(const base::MidiEvent& event, OutputPriority priority, bool is_thru) KNOTWAVE_RT;
 
   /// The values of one lane over a block: steps, unrounded; [n + ahead_samples()]. Empty: it holds.
+  /// Clamped to the lane's steps, NaN is 0.
   using LaneValues = std::span<const double>;
   /// Everything that begins within samples first..first+n-1. lanes[i] belongs to lane i. [audio]
-  /// About n operations a lane that moves, and one a lane that holds.
+  /// Any split gives the same messages. About n operations a lane that moves, and one a lane that
+  /// holds; a few a lane for each message.
   void render(std::int64_t first, std::size_t n, std::span<const LaneValues> lanes,
               PortSink& sink) KNOTWAVE_RT;
 

@@ -27,19 +27,22 @@ struct VoltageConfig {
 
 inline constexpr double kProtectHz = 20;  ///< first order
 
-/// Reads a calibration file: kind "calibration", [[channels]] with volts_full_scale and offset_v.
-/// [control] Errors with line and column.
+/// Reads a calibration file: format 1, kind "calibration", [[channels]] in order from 1, each with
+/// volts_full_scale (0.01..1000, or as much below 0) and offset_v. [control] Errors with line and
+/// column.
 Result<std::vector<VoltageChannel>> parse_calibration(std::string_view text,
                                                       std::string_view source_name);
 
 /// One channel's way to the samples.
 class VoltageOutput {
  public:
-  /// [control] Errors: value_out_of_range (a full scale of 0, a ramp below 1 ms or above 60 s).
+  /// [control] `channel` from 1. Errors: value_out_of_range (a full scale of 0, a ramp below 1 ms
+  /// or above 60 s, a rate outside 8000..768000).
   static Result<VoltageOutput> create(const VoltageConfig& config, int channel);
 
-  /// Volts to samples, clamped to -1..1 (clamps are counted); any split gives the same bits.
-  /// [audio]
+  /// Volts to samples, clamped to -1..1 (clamps are counted); any split gives the same bits. NaN is
+  /// 0 V. The ramp in begins with the first sample; the high-pass comes after the ramps. With
+  /// direct current a sample is within 2^-25 of the ideal one. [audio]
   void render(std::int64_t first, std::span<const double> volts, std::span<float> out) KNOTWAVE_RT;
   /// Begins the way to 0 V at `sample`. [audio]
   void ramp_out(std::int64_t sample) KNOTWAVE_RT;
@@ -47,9 +50,13 @@ class VoltageOutput {
   std::int64_t clamped() const KNOTWAVE_RT { return clamped_; }
 
  private:
-  VoltageConfig config_;
+  VoltageOutput() = default;
+  double gain(std::int64_t sample) const KNOTWAVE_RT;
+  double protect(double in) KNOTWAVE_RT;
+
   VoltageChannel channel_;
-  std::int64_t ramp_samples_ = 1, ramp_in_from_ = 0, ramp_out_from_ = -1;
+  bool is_direct_ = false, has_begun_ = false, is_ramping_out_ = false;
+  std::int64_t ramp_samples_ = 1, ramp_in_from_ = 0, ramp_out_from_ = 0;
   double high_pass_ = 0, last_in_ = 0, coefficient_ = 0;
   std::int64_t clamped_ = 0;
 };

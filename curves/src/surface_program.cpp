@@ -13,7 +13,10 @@ namespace {
 
 using base::index_of;
 
-int cell_of(std::span<const double> breaks, double x) KNOTWAVE_RT {
+/// Of the cells of `breaks`, the one x is in; `near` is looked at first.
+int cell_of(std::span<const double> breaks, double x, int near) KNOTWAVE_RT {
+  const std::size_t last = breaks.size() - 2, i = index_of(near);
+  if ((i == 0 || breaks[i] <= x) && (i == last || x < breaks[i + 1])) return near;
   const auto inner = breaks.subspan(1, breaks.size() - 2);
   return static_cast<int>(std::upper_bound(inner.begin(), inner.end(), x) - inner.begin());
 }
@@ -45,15 +48,15 @@ SurfaceProgram::SurfaceProgram()
       low_{0},
       high_{0} {}
 
-SurfaceProgram::Place SurfaceProgram::place_u(double u) const KNOTWAVE_RT {
+SurfaceProgram::Place SurfaceProgram::place_u(double u, int near) const KNOTWAVE_RT {
   u = KnotDomain{u_min(), u_max(), periodic_u_}.place(u, Side::right);
-  const int cell = cell_of(breaks_u_, u);
+  const int cell = cell_of(breaks_u_, u, near);
   return {cell, (u - breaks_u_[index_of(cell)]) * inverse_widths_u_[index_of(cell)]};
 }
 
-SurfaceProgram::Place SurfaceProgram::place_v(double v) const KNOTWAVE_RT {
+SurfaceProgram::Place SurfaceProgram::place_v(double v, int near) const KNOTWAVE_RT {
   v = KnotDomain{v_min(), v_max(), false}.place(v, Side::right);
-  const int cell = cell_of(breaks_v_, v);
+  const int cell = cell_of(breaks_v_, v, near);
   return {cell, (v - breaks_v_[index_of(cell)]) * inverse_widths_v_[index_of(cell)]};
 }
 
@@ -66,7 +69,7 @@ const double* SurfaceProgram::coefficients(int cell_u, int cell_v, int row) cons
 
 SurfaceProgram::Row SurfaceProgram::row_at(int cell_u, const Place& v,
                                            int coordinate) const KNOTWAVE_RT {
-  Row row{};
+  Row row;  // only powers up to degree_u_ are read
   const double* numerator = coefficients(cell_u, v.cell, coordinate);
   const double* denominator = rational_ ? coefficients(cell_u, v.cell, dim_) : nullptr;
   for (int k = 0; k <= degree_u_; ++k) {
@@ -91,11 +94,26 @@ void SurfaceProgram::render_row(std::span<const double> u, double v, std::span<d
                                 int coordinate) const KNOTWAVE_RT {
   const Place along_v = place_v(v);
   const std::size_t count = std::min(u.size(), out.size());
-  Row row{};
-  int cell = -1;
+  Place along_u;
+  Row row;
   for (std::size_t i = 0; i < count; ++i) {
-    const Place along_u = place_u(u[i]);
-    if (along_u.cell != cell) row = row_at(cell = along_u.cell, along_v, coordinate);
+    const int cell = along_u.cell;
+    along_u = place_u(u[i], cell);
+    if (i == 0 || along_u.cell != cell) row = row_at(along_u.cell, along_v, coordinate);
+    double value = horner(row.numerator, degree_u_, along_u.local);
+    if (rational_) value = value / horner(row.denominator, degree_u_, along_u.local);
+    out[i] = clamped(value, coordinate);
+  }
+}
+
+void SurfaceProgram::render_path(std::span<const double> u, std::span<const double> v,
+                                 std::span<double> out, int coordinate) const KNOTWAVE_RT {
+  const std::size_t count = std::min({u.size(), v.size(), out.size()});
+  Place along_u, along_v;
+  for (std::size_t i = 0; i < count; ++i) {
+    along_u = place_u(u[i], along_u.cell);
+    along_v = place_v(v[i], along_v.cell);
+    const Row row = row_at(along_u.cell, along_v, coordinate);
     double value = horner(row.numerator, degree_u_, along_u.local);
     if (rational_) value = value / horner(row.denominator, degree_u_, along_u.local);
     out[i] = clamped(value, coordinate);

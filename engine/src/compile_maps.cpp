@@ -242,7 +242,9 @@ Result<void> PatchCompiler::add_surface(const MapSpec& map, PatchProgram::MapPar
   }
   part.source_v = map.source_v;
   part.source_v_index = map.source_v_index;
-  part.surface = *surface;
+  auto program = curves::compile_surface(*surface);
+  if (!program) return std::move(program).error();
+  part.surface = *std::move(program);
   return {};
 }
 

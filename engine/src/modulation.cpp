@@ -53,6 +53,20 @@ Signal through_curve(const PatchProgram::MapPart& map, const Signal& u, std::siz
   return {0, scratch.shaped.data()};
 }
 
+Signal over_surface(const curves::SurfaceProgram& surface, const Signal& u, const Signal& v,
+                    std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT {
+  if (u.is_constant() && v.is_constant()) return {surface.at(u.constant, v.constant), nullptr};
+  if (u.is_constant()) std::fill_n(scratch.source.begin(), n, u.constant);
+  const std::span<const double> along_u(u.is_constant() ? scratch.source.data() : u.values, n);
+  const std::span<double> out = std::span(scratch.shaped).first(n);
+  if (v.is_constant()) {
+    surface.render_row(along_u, v.constant, out);
+  } else {
+    surface.render_path(along_u, std::span(v.values, n), out);
+  }
+  return {0, scratch.shaped.data()};
+}
+
 /// What set_target events say, before any map.
 void add_targets(const ChannelTargets* targets, std::int64_t first, std::size_t n,
                  ModulationScratch& scratch) KNOTWAVE_RT {
@@ -135,7 +149,7 @@ double Modulation::value_at_note_on(const PatchProgram::MapPart& map, const Play
   }
   if (map.surface) {
     const double v = now(map.source_v, map.source_v_index, player.source_v);
-    map.surface->evaluate(value, v, std::span(&value, 1));
+    value = map.surface->at(value, v);
   }
   value *= map.depth;
   if (!map.is_control) return value;
@@ -228,11 +242,7 @@ void Modulation::render_map(const PatchProgram& patch, const NoteContext& note, 
   } else if (map.surface) {
     const Signal v = source_signal(map.source_v, map.source_v_index, player.source_v, first, n,
                                    scratch, scratch.source_v);
-    value = combined(value, v, n, scratch.shaped, [&](double at_u, double at_v) {
-      double out = 0;
-      map.surface->evaluate(at_u, at_v, std::span(&out, 1));
-      return out;
-    });
+    value = over_surface(*map.surface, value, v, n, scratch);
   }
   value = mapped(value, n, scratch.shaped, [&](double x) { return map.depth * x; });
   if (map.is_control) {

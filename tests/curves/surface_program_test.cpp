@@ -118,6 +118,25 @@ TEST(SurfaceProgram, ARowIsItsPointsToTheBit) {
   }
 }
 
+TEST(SurfaceProgram, APathIsItsPointsToTheBit) {
+  Dice dice(support::test_seed());
+  for (int round = 0; round < support::test_count(60); ++round) {
+    const NurbsSurface surface = random_surface(dice);
+    const SurfaceProgram program = compiled(surface);
+    std::vector<double> u, v, path(30);
+    for (int i = 0; i < 30; ++i) {
+      const Uv place = random_place(dice, surface);
+      u.push_back(place.u);
+      v.push_back(place.v);
+    }
+    const int coordinate = dice.below(surface.dim());
+    program.render_path(u, v, path, coordinate);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      ASSERT_EQ(path[i], program.at(u[i], v[i], coordinate));
+    }
+  }
+}
+
 TEST(SurfaceProgram, SlopesAreThePartialDerivatives) {
   Dice dice(support::test_seed());
   for (int round = 0; round < support::test_count(100); ++round) {

@@ -49,13 +49,16 @@ class SurfaceProgram {
   /// [audio]
   void render_row(std::span<const double> u, double v, std::span<double> out,
                   int coordinate = 0) const KNOTWAVE_RT;
+  /// out[i] = at(u[i], v[i]) to the bit: a path over the surface. [audio]
+  void render_path(std::span<const double> u, std::span<const double> v, std::span<double> out,
+                   int coordinate = 0) const KNOTWAVE_RT;
 
  private:
   friend class SurfaceCompiler;  // src/compile_surface.cpp
   struct Place;
   struct Row;  // a cell at one v: polynomials of s
-  Place place_u(double u) const KNOTWAVE_RT;
-  Place place_v(double v) const KNOTWAVE_RT;
+  Place place_u(double u, int near = 0) const KNOTWAVE_RT;
+  Place place_v(double v, int near = 0) const KNOTWAVE_RT;
   Row row_at(int cell_u, const Place& v, int coordinate) const KNOTWAVE_RT;
   const double* coefficients(int cell_u, int cell_v, int row) const KNOTWAVE_RT;
   double clamped(double value, int coordinate) const KNOTWAVE_RT;

@@ -9,7 +9,7 @@
 
 #include "knotwave/base/result.h"
 #include "knotwave/curves/curve_program.h"
-#include "knotwave/curves/nurbs_surface.h"
+#include "knotwave/curves/surface_program.h"
 #include "knotwave/dsp/crossfade.h"
 #include "knotwave/dsp/envelope.h"
 #include "knotwave/dsp/shaper.h"
@@ -59,7 +59,7 @@ class PatchProgram {
     int source_index = 0, source_v_index = 0;
     std::optional<curves::CurveProgram> curve;
     std::vector<int> control_slots;  ///< of the curve
-    std::optional<curves::NurbsSurface> surface;
+    std::optional<curves::SurfaceProgram> surface;
     int slot = 0;
     double depth = 1;
     bool is_control = false;  ///< low + (high - low) * value instead of value

@@ -43,8 +43,8 @@ class Performance {
     config.engine.rate_hz = kRateHz;
     config.engine.max_voices = setup.max_voices;
     config.engine.threads = setup.threads;
-    live_ = value_of(
-        engine::LiveEngine::create(config, value_of(engine::BankProgram::create(bank))));
+    live_ =
+        value_of(engine::LiveEngine::create(config, value_of(engine::BankProgram::create(bank))));
     if (script.swap_block >= 0) next_bank_ = value_of(engine::BankProgram::create(bank));
   }
 

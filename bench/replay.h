@@ -37,10 +37,10 @@ struct Setup {
 };
 
 struct Replay {
-  std::vector<double> us;      ///< of each block, the least of all replays
-  std::vector<int> voices;     ///< that sounded when the block ended
-  std::int64_t dropped = 0;    ///< notes without a voice
-  std::string sha256;          ///< of the samples, the same in each replay
+  std::vector<double> us;    ///< of each block, the least of all replays
+  std::vector<int> voices;   ///< that sounded when the block ended
+  std::int64_t dropped = 0;  ///< notes without a voice
+  std::string sha256;        ///< of the samples, the same in each replay
 };
 
 /// Ends the program with a message where the engine cannot be made or two replays differ.

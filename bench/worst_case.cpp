@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// worst_case rank|song|bursts|voices [--replays N] [--blocks N] PATCH...: what blocks of 64 frames at
-// 48 kHz cost the live engine, as Markdown tables for bench/results/live.md. See replay.h.
+// worst_case rank|song|bursts|voices [--replays N] [--blocks N] PATCH...: what blocks of 64 frames
+// at 48 kHz cost the live engine, as Markdown tables for bench/results/live.md. See replay.h.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -118,9 +118,7 @@ Script full_cable(int blocks) {
   add_chord(script, 0, kVoices, true);
   const base::RandomStream random{4, 0, 0};
   std::uint64_t draw = 0;
-  const auto next = [&](int below) {
-    return static_cast<int>(random.unit(draw++) * below);
-  };
+  const auto next = [&](int below) { return static_cast<int>(random.unit(draw++) * below); };
   int voice = 0;
   for (int block = 1; block < blocks; ++block) {
     const int offset = next(kBlockFrames);
@@ -164,6 +162,7 @@ void song(const Options& options) {
     }
     std::cout << share(percentile(us, 99.99)) << " | " << share(percentile(us, 100)) << " |"
               << std::endl;
+    std::cerr << name_of(patch) << ": sha256 " << heard.sha256 << "\n";
   }
 }
 
@@ -194,9 +193,8 @@ std::vector<Burst> bursts() {
       [&](Burst& b) { add_chord(b.script, kAt, kVoices, false, false); });
   add("64 notes end in one block, one a sample",
       [&](Burst& b) { add_chord(b.script, kAt, kVoices, true, false); });
-  add("64 notes take the voices of 64 that sound", [&](Burst& b) {
-    add_chord(b.script, kAt, kVoices, false);
-  });
+  add("64 notes take the voices of 64 that sound",
+      [&](Burst& b) { add_chord(b.script, kAt, kVoices, false); });
   add("64 controllers move, one a sample", [&](Burst& b) {
     for (int i = 0; i < kBlockFrames; ++i) {
       const auto status = static_cast<std::uint8_t>(0xB0 | i % kChannels);
@@ -267,7 +265,7 @@ bool read_options(int argc, char** argv, Options& options) {
   const std::span<char*> words(argv, static_cast<std::size_t>(argc));
   for (std::size_t i = 1; i < words.size(); ++i) {
     const std::string word = words[i];
-    int* number = word == "--replays" ? &options.replays
+    int* number = word == "--replays"  ? &options.replays
                   : word == "--blocks" ? &options.blocks
                                        : nullptr;
     if (number != nullptr) {

@@ -34,27 +34,29 @@ void ChannelBus::follow(const ChannelState& channel, double master_gain, std::in
   pan_.set_target(channel.pan_position(), sample);
 }
 
-void ChannelBus::clear(std::size_t n) KNOTWAVE_RT {
-  std::fill_n(left_.begin(), n, 0.0F);
-  std::fill_n(right_.begin(), n, 0.0F);
+void ChannelBus::clear(std::size_t from, std::size_t until) KNOTWAVE_RT {
+  for (auto* side : {&left_, &right_}) {
+    const std::span<float> places = std::span(*side).first(until).subspan(from);
+    std::fill(places.begin(), places.end(), 0.0F);
+  }
 }
 
-void ChannelBus::add(std::span<const float> left, std::span<const float> right) KNOTWAVE_RT {
-  for (std::size_t i = 0; i < left.size(); ++i) left_[i] += left[i];
-  for (std::size_t i = 0; i < right.size(); ++i) right_[i] += right[i];
+void ChannelBus::add(std::size_t at, std::span<const float> left,
+                     std::span<const float> right) KNOTWAVE_RT {
+  for (std::size_t i = 0; i < left.size(); ++i) left_[at + i] += left[i];
+  for (std::size_t i = 0; i < right.size(); ++i) right_[at + i] += right[i];
 }
 
-ChannelBus::Sides ChannelBus::finish(std::int64_t first, std::size_t n) KNOTWAVE_RT {
+void ChannelBus::finish(std::int64_t first, std::size_t at, std::size_t n) KNOTWAVE_RT {
   gain_.render(first, std::span(gains_).first(n));
   pan_.render(first, std::span(places_).first(n));
   dsp::equal_power(std::span<const double>(places_).first(n), std::span(left_gain_).first(n),
                    std::span(right_gain_).first(n));
   for (std::size_t i = 0; i < n; ++i) {
     const double both = gains_[i] * kSqrt2;
-    left_[i] *= static_cast<float>(both * static_cast<double>(left_gain_[i]));
-    right_[i] *= static_cast<float>(both * static_cast<double>(right_gain_[i]));
+    left_[at + i] *= static_cast<float>(both * static_cast<double>(left_gain_[i]));
+    right_[at + i] *= static_cast<float>(both * static_cast<double>(right_gain_[i]));
   }
-  return {std::span<const float>(left_).first(n), std::span<const float>(right_).first(n)};
 }
 
 }  // namespace knotwave::engine

@@ -21,14 +21,18 @@ class ChannelBus {
   /// Glides to the channel's values from `sample` on; at once when nothing sounds on it. [audio]
   void follow(const ChannelState& channel, double master_gain, std::int64_t sample,
               bool is_silent) KNOTWAVE_RT;
-  /// Forgets what was mixed. [audio]
-  void clear(std::size_t n) KNOTWAVE_RT;
-  void add(std::span<const float> left, std::span<const float> right) KNOTWAVE_RT;
-  /// Volume and pan onto what was mixed, for samples first.. [audio] Returns left and right [n].
+  /// Places from..until-1 are silent. [audio], and so is all below.
+  void clear(std::size_t from, std::size_t until) KNOTWAVE_RT;
+  /// Onto the places from `at` on.
+  void add(std::size_t at, std::span<const float> left, std::span<const float> right) KNOTWAVE_RT;
+  /// Volume and pan onto what was mixed at places at..at+n-1, which are samples first..
+  void finish(std::int64_t first, std::size_t at, std::size_t n) KNOTWAVE_RT;
   struct Sides {
     std::span<const float> left, right;
   };
-  Sides finish(std::int64_t first, std::size_t n) KNOTWAVE_RT;
+  Sides sides(std::size_t n) const KNOTWAVE_RT {
+    return {std::span(left_).first(n), std::span(right_).first(n)};
+  }
 
  private:
   int glide_samples_ = 1;

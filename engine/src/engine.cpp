@@ -1,25 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Blocks to segments: a segment ends where an event is heard, so that nothing depends on the block.
+// Blocks to pieces, and events to the samples they are heard at.
 #include "knotwave/engine/engine.h"
 
 #include <algorithm>
-#include <array>
 
 #include "knotwave/base/document.h"
-#include "knotwave/base/elementary.h"
 #include "knotwave/base/fp_state.h"
 
-#include "channel_bus.h"
 #include "performance.h"
+#include "piece.h"
 #include "workers.h"
 
 namespace knotwave::engine {
 namespace {
-
-/// The longest run of samples between two looks at the voices.
-constexpr std::size_t kSegment = 256;
-/// Fewer samples than this over all voices are not worth a wake.
-constexpr std::size_t kSamplesWorthAWake = 1024;
 
 Result<void> check(const EngineConfig& config) {
   const auto outside = [](const char* what, double value, double low, double high) {
@@ -42,46 +35,19 @@ Result<void> check(const EngineConfig& config) {
 
 struct Engine::State {
   explicit State(const EngineConfig& engine_config)
-      : config(engine_config),
-        volume_lin(base::db_to_gain(engine_config.volume_db)),
-        performance(engine_config),
-        scratches(static_cast<std::size_t>(engine_config.threads)),
-        voice_left(performance.slots().all().size() * kSegment),
-        voice_right(voice_left.size()) {
-    active.reserve(performance.slots().all().size());
-    for (ChannelBus& bus : buses) bus.prepare(config.rate_hz, kSegment);
-  }
+      : config(engine_config), performance(engine_config), piece(engine_config, performance) {}
 
   void reset(const BankProgram* bank) {
     performance.reset(bank);
-    now = 0;
-    for (int c = 0; c < kChannels; ++c) {
-      buses[static_cast<std::size_t>(c)].reset(performance.channel(c), volume_lin);
-    }
+    piece.reset();
   }
 
   void play(const Event& event) KNOTWAVE_RT;
-  void render_segment(std::size_t n) KNOTWAVE_RT;
-  void render_share(int thread) KNOTWAVE_RT;
-  void mix(std::size_t n, std::span<float> left, std::span<float> right,
-           std::span<const Stem> stems, std::size_t offset) KNOTWAVE_RT;
-  std::span<float> side_of(std::vector<float>& side, int voice) KNOTWAVE_RT {
-    return std::span(side).subspan(static_cast<std::size_t>(voice) * kSegment, segment);
-  }
 
   const EngineConfig config;
-  const double volume_lin;
   const BankProgram* first_bank = nullptr;
   Performance performance;
-  std::array<ChannelBus, kChannels> buses;
-  std::array<bool, kChannels> bus_sounds{};
-  std::vector<VoiceScratch> scratches;
-  std::vector<float> voice_left, voice_right;  ///< [voices][kSegment]
-  std::vector<int> active;
-  std::size_t segment = 0;
-  int sharing = 1;  ///< threads that take part in this segment
-  std::int64_t now = 0;
-  std::unique_ptr<Workers> workers;  ///< none: one thread renders all
+  Piece piece;
 };
 
 Engine::Engine(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -95,7 +61,7 @@ Result<std::unique_ptr<Engine>> Engine::create(const EngineConfig& config,
   if (config.threads > 1) {
     auto workers = Workers::start(config.threads);
     if (!workers) return std::move(workers).error();
-    state->workers = std::move(workers).value();
+    state->piece.set_workers(std::move(workers).value());
   }
   state->first_bank = bank;
   state->reset(bank);
@@ -104,7 +70,7 @@ Result<std::unique_ptr<Engine>> Engine::create(const EngineConfig& config,
 
 void Engine::reset() { state_->reset(state_->first_bank); }
 
-std::int64_t Engine::now() const KNOTWAVE_RT { return state_->now; }
+std::int64_t Engine::now() const KNOTWAVE_RT { return state_->piece.now(); }
 
 const EngineCounters& Engine::counters() const KNOTWAVE_RT {
   return state_->performance.counters();
@@ -121,7 +87,7 @@ bool Engine::is_playing(const BankProgram* bank) const KNOTWAVE_RT {
 }
 
 Engine::Newest Engine::newest() const KNOTWAVE_RT {
-  return state_->performance.newest(state_->now);
+  return state_->performance.newest(state_->piece.now());
 }
 
 void Engine::process(std::span<const Event> events, std::span<float> left,
@@ -133,101 +99,37 @@ void Engine::process(std::span<const Event> events, std::span<float> left, std::
                      std::span<const Stem> stems) KNOTWAVE_RT {
   const base::FpStateGuard fp_state;
   State& s = *state_;
+  Piece& piece = s.piece;
   const std::size_t frames = std::min(left.size(), right.size());
-  const std::int64_t end = s.now + static_cast<std::int64_t>(frames);
-  std::size_t next = 0, at = 0;
+  const std::int64_t begin = piece.now(), end = begin + static_cast<std::int64_t>(frames);
+  const auto close = [&] {
+    const auto at = static_cast<std::size_t>(piece.first() - begin);
+    const auto n = static_cast<std::size_t>(piece.now() - piece.first());
+    piece.close(left.subspan(at, n), right.subspan(at, n), stems, at);
+  };
+  std::size_t next = 0;
   for (;;) {
-    while (next < events.size() && base::first_sample(events[next].time()) <= s.now) {
+    const bool is_over = piece.now() == end && frames > 0;
+    if (!is_over && s.performance.next_group() <= piece.now()) piece.carry_group_over();
+    while (next < events.size() && base::first_sample(events[next].time()) <= piece.now()) {
       s.play(events[next++]);
     }
-    if (at == frames) break;
-    std::int64_t until = end;
+    if (piece.now() == end) break;
+    std::int64_t until = std::min(end, s.performance.next_group());
     if (next < events.size()) until = std::min(until, base::first_sample(events[next].time()));
-    const std::size_t n = std::min(static_cast<std::size_t>(until - s.now), kSegment);
-    s.render_segment(n);
-    s.mix(n, left, right, stems, at);
-    s.now += static_cast<std::int64_t>(n);
-    at += n;
-    s.performance.collect();
+    piece.extend(std::min(static_cast<std::size_t>(until - piece.now()), piece.room()));
+    if (piece.now() == end || piece.room() == 0) close();
   }
   while (next < events.size()) s.play(events[next++]);  // past the end, against the contract
 }
 
 void Engine::State::play(const Event& event) KNOTWAVE_RT {
   base::SampleTime time = event.time();
-  if (base::first_sample(time) != now) {  // early ones are played too: none may be lost
+  if (base::first_sample(time) != piece.now()) {  // early ones are played too: none may be lost
     ++performance.counters().events_late;
-    time = {now, 0};
+    time = {piece.now(), 0};
   }
-  performance.handle(event, time);
-  const bool may_move_a_bus =
-      event.kind == Event::Kind::midi && (event.midi.status() == base::MidiStatus::control_change ||
-                                          event.midi.status() == base::MidiStatus::system);
-  if (!may_move_a_bus) return;
-  for (int c = 0; c < kChannels; ++c) {
-    buses[static_cast<std::size_t>(c)].follow(performance.channel(c),
-                                              volume_lin * performance.master_gain(), now,
-                                              performance.slots().bus_is_silent(c));
-  }
-}
-
-void Engine::State::render_segment(std::size_t n) KNOTWAVE_RT {
-  segment = n;
-  active.clear();
-  const auto slots = performance.slots().all();
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (slots[i].state != VoiceSlot::State::free) active.push_back(static_cast<int>(i));
-  }
-  sharing = 1;
-  if (workers && active.size() > 1 && active.size() * n >= kSamplesWorthAWake) {
-    sharing = workers->threads();
-    workers->run([](void* self, int thread) { static_cast<State*>(self)->render_share(thread); },
-                 this);
-  } else {
-    render_share(0);
-  }
-}
-
-void Engine::State::render_share(int thread) KNOTWAVE_RT {
-  VoiceScratch& scratch = scratches[static_cast<std::size_t>(thread)];
-  for (auto i = static_cast<std::size_t>(thread); i < active.size();
-       i += static_cast<std::size_t>(sharing)) {
-    performance.voice(active[i]).render(now, performance.tempo(), scratch,
-                                        side_of(voice_left, active[i]),
-                                        side_of(voice_right, active[i]));
-  }
-}
-
-void Engine::State::mix(std::size_t n, std::span<float> left, std::span<float> right,
-                        std::span<const Stem> stems, std::size_t offset) KNOTWAVE_RT {
-  bus_sounds.fill(false);
-  for (const int voice : active) {
-    const auto bus = static_cast<std::size_t>(performance.slots().at(voice).bus);
-    if (!bus_sounds[bus]) buses[bus].clear(n);
-    bus_sounds[bus] = true;
-    buses[bus].add(side_of(voice_left, voice), side_of(voice_right, voice));
-  }
-  const std::span<float> out_left = left.subspan(offset, n), out_right = right.subspan(offset, n);
-  std::fill(out_left.begin(), out_left.end(), 0.0F);
-  std::fill(out_right.begin(), out_right.end(), 0.0F);
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    ChannelBus::Sides sides;
-    if (bus_sounds[c]) sides = buses[c].finish(now, n);
-    for (std::size_t i = 0; i < sides.left.size(); ++i) {
-      out_left[i] += sides.left[i];
-      out_right[i] += sides.right[i];
-    }
-    if (c >= stems.size()) continue;
-    const auto stem_left = stems[c].left.subspan(offset, n);
-    const auto stem_right = stems[c].right.subspan(offset, n);
-    if (bus_sounds[c]) {
-      std::copy(sides.left.begin(), sides.left.end(), stem_left.begin());
-      std::copy(sides.right.begin(), sides.right.end(), stem_right.begin());
-    } else {
-      std::fill(stem_left.begin(), stem_left.end(), 0.0F);
-      std::fill(stem_right.begin(), stem_right.end(), 0.0F);
-    }
-  }
+  piece.play(event, time);
 }
 
 }  // namespace knotwave::engine

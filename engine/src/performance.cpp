@@ -36,11 +36,48 @@ void Performance::reset(const BankProgram* bank) KNOTWAVE_RT {
   tempo_.reset(config_.rate_hz);
   master_gain_ = 1;
   next_note_ = 0;
+  next_group_ = kNever;
+  next_group_start_ = 0;
   slots_.clear();
   counters_ = {};
 }
 
-void Performance::handle(const Event& event, base::SampleTime time) KNOTWAVE_RT {
+Performance::Reach Performance::reach_of(const Event& event) const KNOTWAVE_RT {
+  using Voices = Reach::Voices;
+  const Reach everything{Voices::all, true, 0, 0};
+  const int channel = event.midi.channel(), one = event.midi.bytes[1] & 127;
+  if (event.kind == Event::Kind::set_target) return {Voices::channel, false, channel, 0};
+  if (event.kind != Event::Kind::midi) return everything;
+  switch (event.midi.status()) {
+    case base::MidiStatus::note_on: {
+      const auto c = static_cast<std::size_t>(channel);
+      if (!targets_[c].is_empty()) return {Voices::channel, false, channel, 0};
+      return {channels_[c].poly_pressure(one) != 0 ? Voices::key : Voices::none, false, channel,
+              one};
+    }
+    case base::MidiStatus::poly_pressure:
+      return {Voices::key, false, channel, one};
+    case base::MidiStatus::channel_pressure:
+    case base::MidiStatus::pitch_bend:
+      return {Voices::channel, false, channel, 0};
+    case base::MidiStatus::control_change:
+      // Those that speak for other channels, or may.
+      if (one >= kAllSoundOff || one == kDataEntryMsb || one == kDataEntryLsb ||
+          (one >= kDataIncrement && one <= kRpnMsb))
+        return everything;
+      return {Voices::channel, true, channel, 0};
+    case base::MidiStatus::system:
+      return everything;
+    case base::MidiStatus::note_off:
+    case base::MidiStatus::program_change:
+    default:
+      return {};
+  }
+}
+
+void Performance::handle(const Event& event, base::SampleTime time,
+                         VoiceUpkeep& upkeep) KNOTWAVE_RT {
+  upkeep_ = &upkeep;
   switch (event.kind) {
     case Event::Kind::midi:
       handle_midi(event.midi, time);
@@ -311,14 +348,17 @@ Engine::Newest Performance::newest(std::int64_t sample) const KNOTWAVE_RT {
 void Performance::collect() KNOTWAVE_RT {
   counters_.voices_now = 0;
   for (int i = 0; i < static_cast<int>(slots_.all().size()); ++i) {
-    VoiceSlot& slot = slots_.at(i);
-    if (slot.state == VoiceSlot::State::free) continue;
-    slot.level = voice(i).level();
-    counters_.joins_limited += voice(i).take_limited_joins();
-    if (voice(i).is_done()) slot.state = VoiceSlot::State::free;
-    if (slot.is_sounding()) ++counters_.voices_now;
+    if (slots_.at(i).state != VoiceSlot::State::free) collect(i);
+    if (slots_.at(i).is_sounding()) ++counters_.voices_now;
   }
   counters_.voices_peak = std::max(counters_.voices_peak, counters_.voices_now);
+}
+
+void Performance::collect(int index) KNOTWAVE_RT {
+  VoiceSlot& slot = slots_.at(index);
+  slot.level = voice(index).level();
+  counters_.joins_limited += voice(index).take_limited_joins();
+  if (voice(index).is_done()) slot.state = VoiceSlot::State::free;
 }
 
 }  // namespace knotwave::engine

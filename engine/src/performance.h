@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -23,13 +24,50 @@ namespace knotwave::engine {
 
 inline constexpr int kChannels = 16;
 
+/// Who renders the voices, between one event and the next.
+class VoiceUpkeep {
+ public:
+  /// The voice, and its slot's level, as they are at the event. Called before it is changed.
+  virtual void bring(int voice) KNOTWAVE_RT = 0;
+  /// The voice begins at the event.
+  virtual void add(int voice) KNOTWAVE_RT = 0;
+
+ protected:
+  ~VoiceUpkeep() = default;
+};
+
 class Performance {
  public:
   explicit Performance(const EngineConfig& config);
 
   void reset(const BankProgram* bank) KNOTWAVE_RT;
   /// `time` is when the event is heard: its own time, or the present sample if that is later.
-  void handle(const Event& event, base::SampleTime time) KNOTWAVE_RT;
+  void handle(const Event& event, base::SampleTime time, VoiceUpkeep& upkeep) KNOTWAVE_RT;
+
+  /// Which voices read what an event changes besides voices (a channel's state, the tempo), and
+  /// whose channel's volume or pan it moves: those are to be brought before it is handled.
+  struct Reach {
+    enum class Voices : std::uint8_t { none, key, channel, all };
+    Voices voices = Voices::none;
+    bool bus = false;
+    int channel = 0, key = 0;
+
+    bool holds(const VoiceSlot& slot) const KNOTWAVE_RT {
+      if (voices == Voices::none || voices == Voices::all) return voices == Voices::all;
+      if (slot.channel != channel && slot.bus != channel) return false;
+      return voices == Voices::channel || slot.key == key;
+    }
+    bool mixes(int of_channel) const KNOTWAVE_RT {
+      return bus && (voices == Voices::all || of_channel == channel);
+    }
+  };
+  Reach reach_of(const Event& event) const KNOTWAVE_RT;
+
+  /// When the next notes go over to the bank installed last, or kNever.
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+  std::int64_t next_group() const KNOTWAVE_RT { return next_group_; }
+  /// They do: all voices that end by `now` have been collected.
+  void carry_group_over(std::int64_t now, VoiceUpkeep& upkeep) KNOTWAVE_RT;
 
   const ChannelState& channel(int c) const KNOTWAVE_RT {
     return channels_[static_cast<std::size_t>(c)];
@@ -46,6 +84,7 @@ class Performance {
   Engine::Newest newest(std::int64_t sample) const KNOTWAVE_RT;
   /// Frees voices that are done and counts the rest. Called when all are rendered up to a sample.
   void collect() KNOTWAVE_RT;
+  void collect(int index) KNOTWAVE_RT;  ///< one voice
 
  private:
   /// One channel's monophonic instrument.
@@ -95,8 +134,15 @@ class Performance {
                       std::uint32_t number) const KNOTWAVE_RT;
   void release(int index, base::SampleTime time, int velocity) KNOTWAVE_RT;
   void fade(int index, base::SampleTime time, double seconds) KNOTWAVE_RT;
+  /// The voice as it is at the event, to be changed.
+  Voice& brought(int index) KNOTWAVE_RT;
+  int victim(int bus, const PatchProgram* patch) KNOTWAVE_RT;
+
+  // performance_install.cpp: a new bank under sounding notes
   void install(const BankProgram* bank, base::SampleTime time) KNOTWAVE_RT;
-  void carry_over(int index, const BankProgram* bank, base::SampleTime time) KNOTWAVE_RT;
+  bool is_left_behind(const VoiceSlot& slot) const KNOTWAVE_RT;
+  void carry_group_over() KNOTWAVE_RT;
+  void carry_over(int index, base::SampleTime time) KNOTWAVE_RT;
 
   // performance_modes.cpp: portamento, mono and poly
   PlayMode play_mode(int channel, const BankProgram::Choice& choice) const KNOTWAVE_RT;
@@ -129,6 +175,10 @@ class Performance {
   std::vector<Voice> voices_;
   std::vector<base::SampleTime> release_times_;  ///< when each voice's gate closed
   EngineCounters counters_;
+  int group_ = 0;                      ///< how many notes go over at a time
+  std::int64_t next_group_ = kNever;   ///< when
+  std::int64_t next_group_start_ = 0;  ///< no earlier than this
+  VoiceUpkeep* upkeep_ = nullptr;      ///< while an event is handled
 };
 
 }  // namespace knotwave::engine

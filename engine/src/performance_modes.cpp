@@ -81,8 +81,8 @@ bool Performance::tie_to_source(int channel, int key, int velocity,
   slot.pedal_held = false;
   const double seconds = portamento(channel, choice, key, source, true).seconds;
   const auto number = static_cast<std::uint32_t>(slot.age);
-  voice(tied).play(context(channel, key, velocity, choice, number), time, false, {seconds, {}},
-                   tempo_);
+  brought(tied).play(context(channel, key, velocity, choice, number), time, false, {seconds, {}},
+                     tempo_);
   last_pitch_[static_cast<std::size_t>(channel)] = {true, voice(tied).pitch_target()};
   return true;
 }

@@ -64,14 +64,28 @@ void Performance::release(int index, base::SampleTime time, int velocity) KNOTWA
   VoiceSlot& slot = slots_.at(index);
   slot.key_down = slot.pedal_held = slot.sostenuto = false;
   release_times_[static_cast<std::size_t>(index)] = time;
-  voice(index).release(time, velocity);
+  brought(index).release(time, velocity);
+}
+
+Voice& Performance::brought(int index) KNOTWAVE_RT {
+  upkeep_->bring(index);
+  return voice(index);
+}
+
+// Of those whose key is up the quietest goes first: their levels must be those of now.
+int Performance::victim(int bus, const PatchProgram* patch) KNOTWAVE_RT {
+  for (int i = 0; i < static_cast<int>(slots_.all().size()); ++i) {
+    const VoiceSlot& slot = slots_.at(i);
+    if (slot.is_sounding() && !slot.gate_is_open()) upkeep_->bring(i);
+  }
+  return slots_.victim(bus, patch);
 }
 
 void Performance::fade(int index, base::SampleTime time, double seconds) KNOTWAVE_RT {
   VoiceSlot& slot = slots_.at(index);
   slot.key_down = slot.pedal_held = slot.sostenuto = false;
   slot.state = VoiceSlot::State::fading;
-  voice(index).fade_out(base::first_sample(time), seconds);
+  brought(index).fade_out(base::first_sample(time), seconds);
 }
 
 NoteContext Performance::context(int channel, int key, int velocity,
@@ -100,9 +114,9 @@ int Performance::begin(int channel, const NoteContext& note, const BankProgram::
   const int bus = zones_.master_of(channel);
   int stolen = -1;
   if (slots_.sounding_count(bus, choice.patch) >= choice.patch->spec().polyphony) {
-    stolen = slots_.victim(bus, choice.patch);
+    stolen = victim(bus, choice.patch);
   } else if (slots_.sounding_count() >= slots_.max_voices()) {
-    stolen = slots_.victim(bus, nullptr);
+    stolen = victim(bus, nullptr);
   }
   if (stolen >= 0) {
     fade(stolen, time, kStealFadeSeconds);
@@ -129,6 +143,7 @@ int Performance::begin(int channel, const NoteContext& note, const BankProgram::
   LastPitch& last = last_pitch_[static_cast<std::size_t>(channel)];
   if (!portamento.from && last.known) start.portamento.from = last.semitones;
   voice(index).start(start, tempo_);
+  upkeep_->add(index);
   last = {true, voice(index).pitch_target()};
   counters_.voices_peak = std::max(counters_.voices_peak, slots_.sounding_count());
   return index;
@@ -146,7 +161,7 @@ void Performance::play_poly(int channel, int key, int velocity, const BankProgra
     } else if (slot.key == key && slot.pedal_held && !slot.is_mono) {
       release(i, time, 64);  // struck again: the pedal need not hold the old one as well
     } else if (is_member && !slot.gate_is_open()) {
-      voice(i).detach();
+      brought(i).detach();
     }
   }
   const auto number = static_cast<std::uint32_t>(next_note_);
@@ -187,7 +202,8 @@ void Performance::play_mono(int channel, int key, int velocity, const BankProgra
       portamento(channel, choice, key, source, !joins || mono.mode == PlayMode::mono);
   slot.key = key;
   slot.key_down = true;
-  voice(mono.slot).play(note, time, joins, is_source ? Portamento{path.seconds, {}} : path, tempo_);
+  brought(mono.slot).play(note, time, joins, is_source ? Portamento{path.seconds, {}} : path,
+                          tempo_);
   last_pitch_[static_cast<std::size_t>(channel)] = {true, voice(mono.slot).pitch_target()};
 }
 
@@ -209,76 +225,9 @@ void Performance::settle_mono(int channel, base::SampleTime time,
   note.key = chosen->key;
   note.velocity = chosen->velocity;
   slot.key = chosen->key;
-  voice(mono.slot).play(note, time, mono.mode == PlayMode::mono,
-                        portamento(channel, *mono.patch, mono.is_drum, true), tempo_);
+  brought(mono.slot).play(note, time, mono.mode == PlayMode::mono,
+                          portamento(channel, *mono.patch, mono.is_drum, true), tempo_);
   last_pitch_[static_cast<std::size_t>(channel)] = {true, voice(mono.slot).pitch_target()};
-}
-
-void Performance::install(const BankProgram* bank, base::SampleTime time) KNOTWAVE_RT {
-  if (bank == nullptr || bank == bank_) return;
-  const int count = static_cast<int>(slots_.all().size());
-  bank_ = bank;
-  for (int i = 0; i < count; ++i) {
-    if (slots_.at(i).is_sounding() && slots_.at(i).bank != bank) carry_over(i, bank, time);
-  }
-  // No patch of the old bank may be remembered: a later one may come to lie at the same address.
-  for (int channel = 0; channel < kChannels; ++channel) {
-    Mono& mono = monos_[static_cast<std::size_t>(channel)];
-    if (mono.patch == nullptr || mono_sounds(mono, channel)) continue;
-    mono.stack.clear();
-    mono.slot = -1;
-    mono.patch = nullptr;
-  }
-}
-
-// The new voice is the same note, begun when the old one began, so that its envelopes stand where
-// they would: only its oscillators start afresh, under the crossfade.
-void Performance::carry_over(int index, const BankProgram* bank,
-                             base::SampleTime time) KNOTWAVE_RT {
-  const VoiceSlot old = slots_.at(index);
-  Voice::Start start = voice(index).begun();
-  fade(index, time, kInstallFadeSeconds);
-  Mono& mono = monos_[static_cast<std::size_t>(old.channel)];
-  const bool was_mono = old.is_mono && mono.slot == index;
-  if (was_mono) mono.slot = -1;
-  const ChannelState& programs = channels_[static_cast<std::size_t>(old.bus)];
-  const BankProgram::Choice choice =
-      bank->choose(old.bus, programs.bank_msb(), programs.bank_lsb(), programs.program(), old.key);
-  const int fresh = slots_.free_place();
-  if (choice.patch == nullptr) return;
-  if (fresh < 0) {
-    ++counters_.notes_dropped;
-    return;
-  }
-  start.patch = choice.patch;
-  start.gain_lin = choice.gain_lin * bank->gain_lin();
-  start.note.note = choice.note;
-  start.note.random.seed = choice.patch->spec().seed ^ config_.seed;
-  start.portamento = {};
-  VoiceSlot& slot = slots_.at(fresh);
-  slot = old;
-  slot.patch = choice.patch;
-  slot.bank = bank;
-  slot.choke_group = choice.choke_group;
-  slot.is_mono = was_mono && play_mode(old.channel, choice) != PlayMode::poly;
-  voice(fresh).start(start, tempo_);
-  voice(fresh).fade_in(base::first_sample(time), kInstallFadeSeconds);
-  if (slot.is_mono) {
-    mono.slot = fresh;
-    mono.patch = choice.patch;
-    mono.mode = play_mode(old.channel, choice);
-  } else if (was_mono) {
-    const NoteStack::Entry* held = mono.stack.choose(mono.patch->spec().priority);
-    slot.key_down = held != nullptr && held->key_down;
-    slot.pedal_held = held != nullptr && !held->key_down;
-    mono.stack.clear();
-    mono.patch = nullptr;
-  }
-  release_times_[static_cast<std::size_t>(fresh)] = release_times_[static_cast<std::size_t>(index)];
-  if (!slot.gate_is_open()) {
-    voice(fresh).release(release_times_[static_cast<std::size_t>(index)],
-                         start.note.release_velocity);
-  }
 }
 
 }  // namespace knotwave::engine

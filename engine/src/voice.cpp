@@ -46,6 +46,16 @@ double Voice::envelope_place(std::int64_t sample) const KNOTWAVE_RT {
       patch_->envelopes()[static_cast<std::size_t>(amp)].program, sample);
 }
 
+bool Voice::may_end_by(std::int64_t sample) const KNOTWAVE_RT {
+  if (fade_.is_over(sample)) return true;
+  const int index = patch_->amp_envelope();
+  const dsp::EnvelopeProgram& program =
+      patch_->envelopes()[static_cast<std::size_t>(index)].program;
+  const dsp::Envelope& amp = modulation_.envelope(index);
+  const bool holds = amp.gate_is_open() && (program.has_sustain() || program.has_loop());
+  return !holds && amp.place_at(program, sample) >= 1;
+}
+
 void Voice::start(const Start& start, const TempoClock& tempo) KNOTWAVE_RT {
   start_ = start;
   patch_ = start.patch;

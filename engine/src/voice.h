@@ -76,6 +76,9 @@ class Voice {
 
   /// Nothing more will be heard. [audio]
   bool is_done() const KNOTWAVE_RT { return done_; }
+  /// Whether it may be done when it is rendered up to `sample`: false only where it will not.
+  /// [audio]
+  bool may_end_by(std::int64_t sample) const KNOTWAVE_RT;
   /// Loudness at the last sample, for the choice of what to steal. [audio]
   double level() const KNOTWAVE_RT { return level_; }
   /// 0..1 along the amp envelope at `sample`. [audio]

@@ -35,10 +35,12 @@ int VoiceSlots::free_place() const KNOTWAVE_RT {
   return found == slots_.end() ? -1 : static_cast<int>(found - slots_.begin());
 }
 
-bool VoiceSlots::bus_is_silent(int bus) const KNOTWAVE_RT {
-  return std::none_of(slots_.begin(), slots_.end(), [&](const VoiceSlot& slot) {
-    return slot.state != VoiceSlot::State::free && slot.bus == bus;
-  });
+std::uint32_t VoiceSlots::sounding_buses() const KNOTWAVE_RT {
+  std::uint32_t buses = 0;
+  for (const VoiceSlot& slot : slots_) {
+    if (slot.state != VoiceSlot::State::free) buses |= 1u << slot.bus;
+  }
+  return buses;
 }
 
 bool VoiceSlots::is_playing(const BankProgram* bank) const KNOTWAVE_RT {

@@ -53,7 +53,8 @@ class VoiceSlots {
   int sounding_count(int bus, const PatchProgram* patch) const KNOTWAVE_RT;
   /// The lowest free place, or -1.
   int free_place() const KNOTWAVE_RT;
-  bool bus_is_silent(int bus) const KNOTWAVE_RT;
+  /// Bit b: something sounds or fades on bus b.
+  std::uint32_t sounding_buses() const KNOTWAVE_RT;
   bool is_playing(const BankProgram* bank) const KNOTWAVE_RT;
 
   /// What a new note may take: released voices first, the quietest of them; then those a pedal

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "knotwave/base/random.h"
+#include "knotwave/engine/channel_state.h"
 
 #include "scenes.h"
 #include "support/seed.h"
@@ -52,6 +53,36 @@ std::vector<Event> busy_journal(std::uint64_t seed, int count, std::int64_t fram
   return events;
 }
 
+/// Many events a piece: besides those above poly pressure, pan, modes, parameters, zones and banks.
+std::vector<Event> crowded_journal(std::uint64_t seed, int count, std::int64_t frames,
+                                   const BankProgram& one, const BankProgram& two) {
+  std::vector<Event> events = busy_journal(seed, count, frames);
+  const base::RandomStream random{seed, 1, 77};
+  for (int i = 0; i < count / 2; ++i) {
+    const auto draw = [&](int which, int below) {
+      return static_cast<int>(random.unit(static_cast<std::uint64_t>(i * 8 + which)) * below);
+    };
+    const std::int64_t sample = static_cast<std::int64_t>(draw(0, 1 << 30)) * frames >> 30;
+    const int channel = draw(2, 16), kind = draw(3, 40);
+    constexpr int kOthers[] = {0, 5, 6, 32, 38, 65, 84, 96, 100, 101, 120, 121, 123, 126, 127};
+    Event event = midi(sample, 0xA0 | channel, 36 + draw(4, 48), draw(5, 128));
+    if (kind < 10) {
+      event = control(sample, channel, draw(4, 2) == 0 ? kPan : kVolume, draw(5, 128));
+    } else if (kind < 14) {
+      event = control(sample, channel, kOthers[draw(4, 15)], draw(5, 128));
+    } else if (kind == 14) {
+      event = midi(sample, 0xC0 | channel, draw(4, 128), 0);
+    } else if (kind == 15) {
+      event = of_kind(sample, Event::Kind::install_bank);
+      event.bank = draw(4, 2) == 0 ? &one : &two;
+    }
+    events.push_back(event);
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.time() < b.time(); });
+  return events;
+}
+
 void expect_same(const Sound& expected, const Sound& found, const std::string& what) {
   ASSERT_EQ(expected.left.size(), found.left.size());
   for (std::size_t i = 0; i < expected.left.size(); ++i) {
@@ -80,6 +111,22 @@ TEST_P(Determinism, AnyBlockSizeGivesTheSameBits) {
   for (const std::size_t block : {1UL, 7UL, 64UL, 100UL, 256UL, 12000UL}) {
     expect_same(expected, render(block), "block " + std::to_string(block));
   }
+}
+
+TEST_P(Determinism, ACrowdOfEventsGivesTheSameBitsAsOneSampleAtATime) {
+  const auto bank = bank_from(GetParam().patch), other = bank_from(GetParam().patch);
+  constexpr std::int64_t kFrames = 6000;
+  const auto events = crowded_journal(support::test_seed(), 1500, kFrames, *bank, *other);
+  const auto render = [&](std::size_t block, int threads) {
+    const auto engine = engine_for(*bank, {.max_voices = 12, .threads = threads});
+    return play(*engine, events, kFrames, block);
+  };
+  const Sound expected = render(1, 1);
+  EXPECT_GT(peak(expected.left), 0.01);
+  for (const std::size_t block : {13UL, 64UL, 255UL, 6000UL}) {
+    expect_same(expected, render(block, 1), "block " + std::to_string(block));
+  }
+  expect_same(expected, render(512, 2), "2 threads");
 }
 
 TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBits) {

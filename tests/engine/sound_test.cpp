@@ -358,6 +358,29 @@ TEST(Sound, AHeldNoteCrossfadesToANewBankWhereItsEnvelopeStands) {
   EXPECT_LE(splice_dbfs(sound.left, 9600 + 480), -110);
 }
 
+/// When the old bank is played no more, in samples after a new one came under so many held notes.
+std::int64_t samples_until_free(int notes) {
+  const auto bank = bank_from(kPlain), other = bank_from(kPlain);
+  const auto engine = engine_for(*bank, {.max_voices = 64});
+  std::vector<Event> events;
+  for (int i = 0; i < notes; ++i) events.push_back(on(0, i % 16, 40 + i));
+  play(*engine, events, 4800);
+  Event install = of_kind(4800, Event::Kind::install_bank);
+  install.bank = other.get();
+  play(*engine, {install}, 1, 1);
+  while (engine->is_playing(bank.get()) && engine->now() < 48000) play(*engine, {}, 1, 1);
+  EXPECT_EQ(engine->counters().voices_now, notes);
+  EXPECT_EQ(engine->counters().notes_dropped, 0);
+  return engine->now() - 4800;
+}
+
+TEST(Sound, AFewNotesGoOverToANewBankAtOnceAndAFullHouseInEightGroups) {
+  EXPECT_EQ(samples_until_free(1), 960);
+  EXPECT_EQ(samples_until_free(8), 960);
+  EXPECT_EQ(samples_until_free(9), 960 + 240);
+  EXPECT_EQ(samples_until_free(64), 960 + 7 * 240);
+}
+
 TEST(PatchProgram, WhatMovesItselfIsRefusedByName) {
   auto patch = parse_patch(kPlain, "scene.toml");
   ASSERT_TRUE(patch);

@@ -103,10 +103,10 @@ TEST(VoiceSlots, ABankIsPlayedUntilItsLastVoiceHasFaded) {
   slots.at(1).bank = program;
   slots.at(1).state = VoiceSlot::State::fading;
   EXPECT_TRUE(slots.is_playing(program));
-  EXPECT_FALSE(slots.bus_is_silent(0));
+  EXPECT_EQ(slots.sounding_buses(), 1u);
   slots.clear();
   EXPECT_FALSE(slots.is_playing(program));
-  EXPECT_TRUE(slots.bus_is_silent(0));
+  EXPECT_EQ(slots.sounding_buses(), 0u);
 }
 
 }  // namespace

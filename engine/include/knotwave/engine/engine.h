@@ -72,7 +72,7 @@ class Engine {
   /// No voice sounds or will sound without a new event. [audio]
   bool is_idle() const KNOTWAVE_RT;
   /// New notes or sounding voices read `bank`: it must be kept. After an install_bank event the old
-  /// one is free 20 ms later. [audio]
+  /// one is free 55 ms later at most. [audio]
   bool is_playing(const BankProgram* bank) const KNOTWAVE_RT;
   /// The next sample to be rendered. [audio]
   std::int64_t now() const KNOTWAVE_RT;

@@ -12,6 +12,7 @@
 
 #include "knotwave/io/audio_device.h"
 
+#include "live/host_servers.h"
 #include "live/live_clients.h"
 #include "support/background_program.h"
 #include "support/jack_clients.h"
@@ -21,16 +22,10 @@ namespace knotwave::io {
 namespace {
 
 using support::BackgroundProgram;
-using support::SetVariable;
+using support::expect_program;
 using State = AudioStatus::State;
 
 constexpr std::size_t kRateHz = 48000;
-
-void expect_program(const char* name, const char* package) {
-  const std::string command = "command -v " + std::string(name);
-  ASSERT_EQ(support::run_program({"/bin/sh", "-c", command}).exit_code, 0)
-      << name << " is missing: apt-get install " << package;
-}
 
 /// How the numbers of NumberedClient came out at the other end.
 struct Heard {
@@ -76,15 +71,9 @@ TEST(PulseAudio, TheNullSinkHearsTheVerySamples) {
   expect_program("pulseaudio", "pulseaudio");
   expect_program("parec", "pulseaudio-utils");
   const support::NoJackServer no_jack;
-  const support::ScratchFolder folder;
-  const SetVariable home("HOME", folder.path()), runtime("XDG_RUNTIME_DIR", folder.path());
-  const SetVariable pulse_runtime("PULSE_RUNTIME_PATH", folder.path());
-  std::ofstream(folder.file(".asoundrc")) << "pcm.!default { type pulse }\n";
-  const BackgroundProgram server(
-      {"pulseaudio", "-n", "--daemonize=no", "--exit-idle-time=-1", "--disable-shm=yes",
-       "--load=module-native-protocol-unix",
-       "--load=module-null-sink sink_name=nul rate=48000 format=float32le"},
-      folder.file("log"));
+  support::PulseServer server;
+  ASSERT_TRUE(server.start());
+  const support::ScratchFolder& folder = server.folder();
   NumberedClient client;
   std::unique_ptr<AudioStream> stream;
   seconds_until(
@@ -112,22 +101,6 @@ TEST(PulseAudio, TheNullSinkHearsTheVerySamples) {
   EXPECT_EQ(heard.backward, 0U);
   EXPECT_GE(heard.longest_run, kRateHz / 2);
 }
-
-constexpr const char* kPipeWireSetup = R"(
-context.properties = { core.daemon = true core.name = pipewire-0 support.dbus = false
-  default.clock.rate = 48000 default.clock.quantum = 1024
-  default.clock.min-quantum = 1024 default.clock.max-quantum = 1024 }
-context.spa-libs = { audio.convert.* = audioconvert/libspa-audioconvert
-  support.* = support/libspa-support }
-context.modules = [ { name = libpipewire-module-protocol-native }
-  { name = libpipewire-module-metadata } { name = libpipewire-module-spa-node-factory }
-  { name = libpipewire-module-client-node } { name = libpipewire-module-adapter }
-  { name = libpipewire-module-link-factory } { name = libpipewire-module-access } ]
-context.objects = [ { factory = adapter args = { factory.name = support.null-audio-sink
-  node.name = "null-sink" node.description = "Null" media.class = "Audio/Sink"
-  audio.position = "FL,FR" node.pause-on-idle = false
-  adapter.auto-port-config = { mode = dsp monitor = true position = preserve } } } ]
-)";
 
 // Run below by the next test, with PipeWire's libjack in place of jackd's.
 TEST(PipeWire, DISABLED_AsAClient) {
@@ -162,18 +135,8 @@ TEST(PipeWire, DISABLED_AsAClient) {
 TEST(PipeWire, TheNullSinkHearsTheVerySamples) {
   expect_program("pipewire", "pipewire");
   expect_program("pw-jack", "pipewire-jack");
-  const support::ScratchFolder folder;
-  const SetVariable home("HOME", folder.path()), runtime("XDG_RUNTIME_DIR", folder.path());
-  const SetVariable pipewire_runtime("PIPEWIRE_RUNTIME_DIR", folder.path());
-  std::ofstream(folder.file("setup.conf")) << kPipeWireSetup;
-  const BackgroundProgram server({"pipewire", "-c", folder.file("setup.conf")}, folder.file("log"));
-  const std::string is_up = "pw-jack jack_lsp 2>/dev/null | grep -q Null";
-  EXPECT_LT(seconds_until(
-                [&] {
-                  return support::run_program({"/bin/sh", "-c", is_up}).exit_code == 0;
-                },
-                10),
-            10);
+  support::PipeWireServer server;
+  ASSERT_TRUE(server.start());
   const support::ProgramRun inside = support::run_program(
       {"/bin/sh", "-c",
        "exec pw-jack " + ::testing::internal::GetArgvs()[0] +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A patch and its curve file that are saved again and again under a sounding knotwave-synth, now and
-// then broken: the sound goes on, the last save wins, and nothing is left behind.
+// A patch and its curve file that are saved again and again under a sounding knotwave-synth, now
+// and then broken: the sound goes on, the last save wins, and nothing is left behind.
 #include <csignal>
 #include <filesystem>
 #include <fstream>

@@ -158,6 +158,12 @@ void FittedPieces::add(double u_a, double u_b, std::span<const double> piece) {
   right.clear();
 }
 
+void FittedPieces::note_error(double error, double u) {
+  if (error <= max_error) return;
+  max_error = error;
+  worst_at = u;
+}
+
 void FittedPieces::lay_out(ProgramParts& parts) const {
   const int rows = count() * outputs;
   parts.degree = 0;
@@ -183,19 +189,20 @@ bool fit_pieces(const FitTarget& target, double u_a, double u_b, const FitLimits
   while (!ends.empty()) {
     if (pieces.count() + static_cast<int>(ends.size()) > limits.max_pieces) return false;
     const Piece piece = fitter.fit(u_a, ends.back(), pieces.right);
+    const double middle = piece.u_a + 0.5 * (piece.u_b - piece.u_a);
+    const bool can_halve = middle > piece.u_a && middle < piece.u_b;
     const double seen = fitter.error(piece);
     const double error =
-        seen <= kAccepted * limits.max_error
+        seen <= kAccepted * limits.max_error || !can_halve
             ? proof({piece.u_a, piece.u_b, piece.coefficients}, seen, pieces.max_error)
             : std::numeric_limits<double>::infinity();
-    const double middle = piece.u_a + 0.5 * (piece.u_b - piece.u_a);
-    if (!(error <= limits.max_error) && middle > piece.u_a && middle < piece.u_b) {
+    if (!(error <= limits.max_error) && can_halve) {
       ends.push_back(middle);
       continue;
     }
     pieces.add(piece.u_a, piece.u_b, piece.coefficients);
     pieces.right = piece.right;
-    pieces.max_error = std::max(pieces.max_error, error);
+    pieces.note_error(error, u_a);
     u_a = ends.back();
     ends.pop_back();
   }

@@ -30,10 +30,12 @@ struct FittedPieces {
   std::vector<double> right;  ///< value at the last break, where the next piece begins; empty: at
                               ///< the target's own value there
   double max_error = 0;
+  double worst_at = 0;  ///< where the piece begins that has it
 
   int count() const { return breaks.empty() ? 0 : static_cast<int>(breaks.size()) - 1; }
   /// One piece of any degree up to kMaxPieceDegree; breaks must go on from the last one.
   void add(double u_a, double u_b, std::span<const double> piece);
+  void note_error(double error, double u);
   /// Breaks, coefficients, degree (the highest power any piece uses) and error.
   void lay_out(ProgramParts& parts) const;
 };

@@ -102,8 +102,13 @@ double ParameterProof::error_over(const FitPiece& piece, double found, double se
   return worst;
 }
 
-TimeProof::TimeProof(const SpanPolynomial& span, const FitLimits& limits)
-    : span_(span), limits_(limits), clock_(span) {}
+TimeProof::TimeProof(const TimedSpan& span, const FitLimits& limits)
+    : timed_(span), span_(span.of), limits_(limits), clock_(span) {}
+
+SpanClock::Around TimeProof::between(double early, double late) {
+  const SpanClock::Around a = clock_.around(early), b = clock_.around(late);
+  return timed_.is_backward ? SpanClock::Around{b.low, a.high} : SpanClock::Around{a.low, b.high};
+}
 
 Bernstein TimeProof::part(int c, const SpanClock::Around& t) const {
   const auto row = span_.bezier_row(c);
@@ -117,13 +122,13 @@ double TimeProof::operator()(const FitPiece& piece, double found, double settled
 }
 
 double TimeProof::error_over(const FitPiece& piece, double found, double settled) {
-  const SpanClock::Around t{clock_.around(piece.u_a).low, clock_.around(piece.u_b).high};
+  const SpanClock::Around t = between(piece.u_a, piece.u_b);
   const DoubleDouble width = DoubleDouble::difference(piece.u_b, piece.u_a);
+  const DoubleDouble start = timed_.local(piece.u_a);
   Bernstein local;  // (X - x_a D) / width, over the whole span
   for (std::size_t j = 0; j < span_.bezier_row(0).size(); ++j) {
-    const DoubleDouble since =
-        span_.bezier_row(0)[j] - span_.bezier_row(span_.dim)[j] * DoubleDouble(piece.u_a);
-    local.push_back(since / width);
+    const DoubleDouble since = span_.bezier_row(0)[j] - span_.bezier_row(span_.dim)[j] * start;
+    local.push_back((timed_.is_backward ? -since : since) / width);
   }
   const ScaledBernstein place = scaled(part_of(std::move(local), t.low, t.high));
   std::vector<ScaledBernstein> weights{{DoubleDouble(1.0)}};  // powers 0 .. 7 of D
@@ -177,8 +182,20 @@ double TimeProof::change_over(const SpanClock::Around& t) const {
   return most;
 }
 
-double TimeProof::change_before(double x) { return change_over({0.0, clock_.around(x).high}); }
+double TimeProof::change_before(double x) {
+  const SpanClock::Around t = clock_.around(x);
+  return change_over(timed_.is_backward ? SpanClock::Around{t.low, 1.0}
+                                        : SpanClock::Around{0.0, t.high});
+}
 
-double TimeProof::change_after(double x) { return change_over({clock_.around(x).low, 1.0}); }
+double TimeProof::change_after(double x) {
+  const SpanClock::Around t = clock_.around(x);
+  return change_over(timed_.is_backward ? SpanClock::Around{0.0, t.high}
+                                        : SpanClock::Around{t.low, 1.0});
+}
+
+double TimeProof::change_between(double early, double late) {
+  return change_over(between(early, late));
+}
 
 }  // namespace knotwave::curves

@@ -32,11 +32,13 @@ class ParameterProof {
 /// parameter where time is in [x_a, x_b]. Few doubles as above.
 class TimeProof {
  public:
-  TimeProof(const SpanPolynomial& span, const FitLimits& limits);
+  TimeProof(const TimedSpan& span, const FitLimits& limits);
   double operator()(const FitPiece& piece, double found, double settled);
-  /// How far the outputs may move from the span's start to time x, and from there to its end.
+  /// How far the outputs may move from the span's first time to x, and from there to its last.
   double change_before(double x);
   double change_after(double x);
+  /// How far they may move while nobody knows whether time is before `early` or after `late`.
+  double change_between(double early, double late);
 
  private:
   /// Coordinate c (row dim: the weight) over [t.low, t.high].
@@ -44,7 +46,10 @@ class TimeProof {
   double error_over(const FitPiece& piece, double found, double settled);
   double error_at(const FitPiece& piece, double x);
   double change_over(const SpanClock::Around& t) const;
+  /// The interval of t that holds both, whichever comes first.
+  SpanClock::Around between(double early, double late);
 
+  const TimedSpan& timed_;
   const SpanPolynomial& span_;
   const FitLimits& limits_;
   SpanClock clock_;

@@ -36,20 +36,24 @@ struct Ahead {
   }
 };
 
-Ahead ahead_of(const SpanPolynomial& span, double x) {
+Ahead ahead_of(const TimedSpan& timed, DoubleDouble local) {
+  const SpanPolynomial& span = timed.of;
   const auto time = span.bezier_row(0), weight = span.bezier_row(span.dim);
   // A product and a sum a power, each right to 2^-102.
   const double of_value = static_cast<double>(time.size() + 1) * 0x1p-101;
   const double of_terms = span.is_whole ? 0x1p-104 : 0x1p-100;
   Ahead ahead;
   for (std::size_t j = 0; j < time.size(); ++j) {
-    const DoubleDouble now = weight[j] * DoubleDouble(x);
+    const DoubleDouble now = weight[j] * local;
     const DoubleDouble apart = time[j] - now;
     // Products of doubles are exact, and so is what is 0, or a difference of plain doubles.
     const bool is_exact = span.is_whole && (apart.hi == 0 || (time[j].lo == 0 && now.lo == 0));
     const double terms = is_exact ? 0 : std::abs(time[j].hi) + std::abs(now.hi);
     ahead.time.push_back(apart);
-    ahead.noise.push_back(of_value * std::abs(apart.hi) + of_terms * terms);
+    // Cut spans have coefficients of any size, down to where products are 0.
+    constexpr double kLeast = 0x1p-900;
+    ahead.noise.push_back(of_value * std::abs(apart.hi) + of_terms * terms +
+                          (timed.is_exact ? kLeast : 0));
   }
   return ahead;
 }
@@ -107,12 +111,14 @@ Real SpanClock::root(std::span<const Real> c, Real t) const {
   return t;
 }
 
-DoubleDouble SpanClock::parameter_at(DoubleDouble x) {
-  const auto time = span_->row(0);
-  const auto weight = span_->row(span_->dim);
+DoubleDouble SpanClock::parameter_at(DoubleDouble x) { return root_at(span_->local(x)); }
+
+DoubleDouble SpanClock::root_at(DoubleDouble local) {
+  const auto time = span_->of.row(0);
+  const auto weight = span_->of.row(span_->of.dim);
   DoubleDouble end = 0.0;
   for (std::size_t k = 0; k < c_.size(); ++k) {
-    c_[k] = weight[k].hi == 0 ? time[k] : time[k] - x * weight[k];
+    c_[k] = weight[k].hi == 0 ? time[k] : time[k] - local * weight[k];
     near_[k] = c_[k].hi;
     end += c_[k];
   }
@@ -124,11 +130,13 @@ DoubleDouble SpanClock::parameter_at(DoubleDouble x) {
 }
 
 SpanClock::Around SpanClock::around(double x) {
-  const Ahead ahead = ahead_of(*span_, x);
+  const DoubleDouble local = span_->local(x);
+  const Ahead ahead = ahead_of(*span_, local);
+  if (span_->is_exact && local.hi == 0 && ahead.time.front().hi == 0) return {0.0, 0.0};
   const DoubleDouble t = ahead.time.front().hi >= 0  ? DoubleDouble(0.0)
                          : ahead.time.back().hi <= 0 ? DoubleDouble(1.0)
-                                                     : parameter_at(x);
-  // Time never goes back, so it is x between a place before and a place after.
+                                                     : root_at(local);
+  // Where time is x lies between a place before and a place after.
   const DoubleDouble rest = DoubleDouble(1.0) - t;
   const double scale = t.hi > 0 && rest.hi > 0 ? std::min(t.hi, rest.hi) : 1;
   const double back = certain_step(

@@ -6,6 +6,8 @@
 
 #include "knotwave/base/document.h"
 
+#include "exact_span.h"
+#include "flat_times.h"
 #include "next_double.h"
 #include "piece_bounds.h"
 #include "piece_fit.h"
@@ -15,45 +17,6 @@ namespace knotwave::curves {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-/// dx/dt times the weight squared, in doubles: its sign and its small values are what is asked.
-double time_slope(const SpanPolynomial& span, double t) {
-  const auto n = span.row(0);
-  const auto d = span.row(span.dim);
-  return (polynomial_slope_at(n, t) * polynomial_at(d, t) -
-          polynomial_at(n, t) * polynomial_slope_at(d, t))
-      .hi;
-}
-
-/// Parameters inside the span where time moves slowest: there y(x) is steep, or vertical. Pieces
-/// that end there can shrink towards it from both sides.
-std::vector<double> steep_places(const SpanPolynomial& span) {
-  constexpr int kSteps = 48;
-  constexpr double kSteep = 0.2;  // of the mean speed
-  double slope[kSteps + 1];
-  double mean = 0;
-  for (int i = 0; i <= kSteps; ++i) {
-    slope[i] = time_slope(span, static_cast<double>(i) / kSteps);
-    mean += slope[i] / (kSteps + 1);
-  }
-  std::vector<double> places;
-  for (int i = 1; i < kSteps; ++i) {
-    if (!(slope[i] < kSteep * mean && slope[i] <= slope[i - 1] && slope[i] < slope[i + 1]))
-      continue;
-    double low = static_cast<double>(i - 1) / kSteps;
-    double high = static_cast<double>(i + 1) / kSteps;
-    for (int step = 0; step < 60; ++step) {
-      const double third = (high - low) / 3;
-      if (time_slope(span, low + third) <= time_slope(span, high - third)) {
-        high -= third;
-      } else {
-        low += third;
-      }
-    }
-    places.push_back(0.5 * (low + high));
-  }
-  return places;
-}
 
 bool is_constant(std::span<const DoubleDouble> c, std::size_t from) {
   return std::all_of(c.begin() + static_cast<std::ptrdiff_t>(from), c.end(),
@@ -100,30 +63,30 @@ bool stands_still(const SpanPolynomial& span) {
 
 /// Where a span's last piece ends: its last time, rounded. Where that is earlier, the double there
 /// is played by the next span; if y moves much until the span is over, this one keeps it.
-double end_of(const SpanPolynomial& span, bool is_last, const FitLimits& limits,
-              FittedPieces& pieces) {
+double end_of(const TimedSpan& span, bool is_last, const FitLimits& limits, FittedPieces& pieces) {
   constexpr double kMuch = 0.05;
-  const DoubleDouble end = coordinate_at(span, 0, 1.0);
+  const DoubleDouble end = span.time_at(span.last());
   if (!(end.lo > 0)) return end.hi;
   const double change = TimeProof(span, limits).change_after(end.hi);
   if (!is_last && change > kMuch * limits.max_error) return next_up(end.hi);
-  pieces.max_error = std::max(pieces.max_error, change);
+  pieces.note_error(change, end.hi);
   return end.hi;
 }
 
 /// The first time, rounded. The value there is that of the start, even if that is later.
-double start_of(const SpanPolynomial& span, const FitLimits& limits, FittedPieces& pieces) {
-  const DoubleDouble start = coordinate_at(span, 0, 0.0);
+double start_of(const TimedSpan& span, const FitLimits& limits, FittedPieces& pieces) {
+  const DoubleDouble start = span.time_at(span.first());
   if (start.lo < 0) {
-    pieces.max_error = std::max(pieces.max_error, TimeProof(span, limits).change_before(start.hi));
+    pieces.note_error(TimeProof(span, limits).change_before(start.hi), start.hi);
   }
   return start.hi;
 }
 
-bool fit_span(const SpanPolynomial& span, double x_a, double x_b, const FitLimits& limits,
+bool fit_part(const TimedPart& part, double x_a, double x_b, const FitLimits& limits,
               FittedPieces& pieces) {
-  SpanClock clock(span);
-  TimeProof prover(span, limits);
+  const SpanPolynomial& span = part.span.of;
+  SpanClock clock(part.span);
+  TimeProof prover(part.span, limits);
   const FitProof proof = [&](const FitPiece& piece, double found, double settled) {
     return prover(piece, found, settled);
   };
@@ -132,14 +95,25 @@ bool fit_span(const SpanPolynomial& span, double x_a, double x_b, const FitLimit
     for (int c = 1; c < span.dim; ++c) out[at(c - 1)] = coordinate_at(span, c, t);
   };
   std::vector<double> ends;
-  for (const double t : steep_places(span)) {
-    const double x = coordinate_at(span, 0, t).hi;
-    if (x > x_a && x < x_b && (ends.empty() || x > ends.back())) ends.push_back(x);
+  for (const double x : part.steep) {
+    if (x > x_a && x < x_b) ends.push_back(x);
   }
   ends.push_back(x_b);
-  pieces.right.clear();
   for (const double end : ends) {
     if (!fit_pieces(target, x_a, end, limits, proof, pieces)) return false;
+    x_a = end;
+  }
+  return true;
+}
+
+/// Pieces of a span over [x_a, x_b].
+bool fit_span(const std::vector<TimedPart>& parts, double x_a, double x_b, const FitLimits& limits,
+              FittedPieces& pieces) {
+  pieces.right.clear();
+  for (const TimedPart& part : parts) {
+    const double end = std::min(part.until, x_b);
+    if (!(end > x_a)) continue;
+    if (!fit_part(part, x_a, end, limits, pieces)) return false;
     x_a = end;
   }
   return true;
@@ -209,6 +183,31 @@ std::vector<double> values_at(const SpanPolynomial& span, double t) {
   return values;
 }
 
+std::vector<TimedPart> whole_part(SpanPolynomial span) {
+  std::vector<TimedPart> parts;
+  parts.push_back({{std::move(span)}, {}});
+  return parts;
+}
+
+/// error_bound_missed, with the place.
+Error missed_at(const NurbsCurve& curve, const FittedPieces& pieces,
+                const CompileOptions& options) {
+  const double x = pieces.worst_at, u = parameter_at_time(curve, x);
+  std::string why = "at x = " + base::number_text(x) + ", u = " + base::number_text(u);
+  int order = 1;
+  for (const SpanPolynomial& span : span_polynomials(HomogeneousCurve(curve))) {
+    if (!(span.u0 <= u && u <= span.u1)) continue;
+    const DoubleDouble t =
+        DoubleDouble::difference(u, span.u0) / DoubleDouble::difference(span.u1, span.u0);
+    order = std::max(order, order_of_time(span, t));
+  }
+  why += order > 1 ? ", where time stands still to order " + std::to_string(order) +
+                         "; ask for a larger error, move the points so that time goes on there, "
+                         "or play both coordinates by u (compile_parametric)"
+                   : "; this is rounding";
+  return missed_bound(curve, pieces.max_error, options.max_error, why);
+}
+
 }  // namespace
 
 Result<ProgramParts> inverted_parts(const NurbsCurve& curve, const CompileOptions& options) {
@@ -224,21 +223,27 @@ Result<ProgramParts> inverted_parts(const NurbsCurve& curve, const CompileOption
   const FitLimits limits{options.max_error, options.max_pieces, parts.low, parts.high};
   FittedPieces pieces;
   pieces.outputs = parts.dim;
-  const std::vector<SpanPolynomial> spans = span_polynomials(HomogeneousCurve(curve));
-  for (const SpanPolynomial& span : spans) {
+  std::vector<SpanPolynomial> spans = span_polynomials(HomogeneousCurve(curve));
+  parts.end_values = values_at(spans.back(), 1.0);
+  for (SpanPolynomial& span : spans) {
     if (stands_still(span)) continue;  // y jumps
+    std::vector<double> start_values = values_at(span, 0.0);
+    const bool is_last = &span == &spans.back(), is_line = is_affine(span);
+    const std::vector<TimedPart> timed =
+        is_line ? whole_part(std::move(span)) : timed_parts(curve, std::move(span), limits);
     const double x_a =
-        pieces.breaks.empty() ? start_of(span, limits, pieces) : pieces.breaks.back();
-    const double x_b = end_of(span, &span == &spans.back(), limits, pieces);
+        pieces.breaks.empty() ? start_of(timed.front().span, limits, pieces) : pieces.breaks.back();
+    const double x_b = end_of(timed.back().span, is_last, limits, pieces);
     if (!(x_b > x_a)) continue;
-    if (pieces.breaks.empty()) parts.start_values = values_at(span, 0.0);
+    if (pieces.breaks.empty()) parts.start_values = std::move(start_values);
     bool enough = true;
-    if (is_affine(span)) {
-      const std::vector<double> piece = affine_piece(span);
+    if (is_line) {
+      const SpanPolynomial& line = timed.front().span.of;
+      const std::vector<double> piece = affine_piece(line);
       pieces.add(x_a, x_b, piece);
-      pieces.max_error = std::max(pieces.max_error, affine_error(span, x_a, x_b, piece));
+      pieces.note_error(affine_error(line, x_a, x_b, piece), x_a);
     } else {
-      enough = fit_span(span, x_a, x_b, limits, pieces);
+      enough = fit_span(timed, x_a, x_b, limits, pieces);
     }
     if (!enough || pieces.count() > options.max_pieces) {
       return too_many_pieces(curve, options);
@@ -247,10 +252,7 @@ Result<ProgramParts> inverted_parts(const NurbsCurve& curve, const CompileOption
   if (pieces.count() == 0) {
     return fail(ErrorCode::empty_domain, "curve '" + curve.name() + "': time never moves on");
   }
-  parts.end_values = values_at(spans.back(), 1.0);
-  if (!(pieces.max_error <= options.max_error)) {
-    return missed_bound(curve, pieces.max_error, options.max_error, "this is rounding");
-  }
+  if (!(pieces.max_error <= options.max_error)) return missed_at(curve, pieces, options);
   pieces.lay_out(parts);
   return parts;
 }
@@ -262,11 +264,20 @@ Result<CurveProgram> compile_timed(const NurbsCurve& curve, const CompileOptions
 }
 
 double parameter_at_time(const NurbsCurve& curve, double x) {
-  const std::vector<SpanPolynomial> spans = span_polynomials(HomogeneousCurve(curve));
+  constexpr double kSure = 0x1p-32;
+  std::vector<SpanPolynomial> spans = span_polynomials(HomogeneousCurve(curve));
   for (auto span = spans.rbegin(); span != spans.rend(); ++span) {
     if (!(coordinate_at(*span, 0, 0.0).hi <= x)) continue;
-    const DoubleDouble t = SpanClock(*span).parameter_at(x);
-    return (DoubleDouble(span->u0) + t * DoubleDouble::difference(span->u1, span->u0)).hi;
+    const double u0 = span->u0;
+    const DoubleDouble width = DoubleDouble::difference(span->u1, u0);
+    const TimedSpan timed{std::move(*span)};
+    SpanClock clock(timed);
+    DoubleDouble t = clock.parameter_at(x);
+    const SpanClock::Around around = clock.around(x);
+    if ((around.high - around.low).hi > kSure && !curve.is_periodic()) {
+      t = ExactSpan(curve, u0).place_of(x, around.low, around.high).rounded();
+    }
+    return (DoubleDouble(u0) + t * width).hi;
   }
   return curve.u_min();
 }

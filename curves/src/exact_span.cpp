@@ -73,6 +73,10 @@ BigFloat ExactSpan::blossom(Row points, const BigFloat& a, const BigFloat& b, in
   return points.back();
 }
 
+int ExactSpan::time_sign(double x, const BigFloat& t) const {
+  return blossom(row(0, x), knot_of(t), {}, 0).sign();
+}
+
 BigFloat ExactSpan::place_of(double x, BigFloat low, BigFloat high) const {
   const Row time = row(0, x);
   const BigFloat half = 0.5, enough = BigFloat::power_of_two(-kPlaceBits);

@@ -18,7 +18,10 @@ class ExactSpan {
  public:
   ExactSpan(const NurbsCurve& curve, double u0);
 
-  /// Where in [low, high] of the span's t (0 to 1) time is x, to 2^-kPlaceBits: before x there,
+  /// Whether time is before x, or after x, at t of the span (0 to 1).
+  bool is_before(double x, const BigFloat& t) const { return time_sign(x, t) < 0; }
+  bool is_after(double x, const BigFloat& t) const { return time_sign(x, t) > 0; }
+  /// Where in [low, high] of t time is x, to 2^-kPlaceBits: before x there,
   /// after x within that. Time must not be after x at low, nor before it at high.
   BigFloat place_of(double x, BigFloat low, BigFloat high) const;
   static constexpr int kPlaceBits = 112;
@@ -33,6 +36,7 @@ class ExactSpan {
 
   /// Row `c` of the weighted control points, time less `origin` (row dim: the weights).
   Row row(int c, double origin) const;
+  int time_sign(double x, const BigFloat& t) const;
   BigFloat knot_of(const BigFloat& t) const;
   /// The blossom of a row by `count` arguments b, the others a; both are values of u.
   BigFloat blossom(Row points, const BigFloat& a, const BigFloat& b, int count) const;

@@ -73,8 +73,23 @@ double noise_of_times(const SpanPolynomial& span) {
 /// doubles are dense.
 struct FlatTime {
   double x = 0;
-  BigFloat t;
+  BigFloat first, last;  ///< places; two where time goes back in between, within rounding
 };
+
+/// Where from t, where time goes back, towards `end` it turns: the first such place.
+double turn_of_time(const SpanPolynomial& span, double t, double end) {
+  const auto is_backward = [&](double share) {
+    return time_slope(span, t + (end - t) * share) < 0;
+  };
+  double far = 0x1p-60;
+  while (far < 1 && is_backward(far)) far *= 2;
+  double near = 0.5 * far;
+  for (int step = 0; step < 50; ++step) {
+    const double middle = 0.5 * (near + far);
+    (is_backward(middle) ? near : far) = middle;
+  }
+  return t + (end - t) * near;
+}
 
 /// What double-double knows of a span's times.
 class Certainty {
@@ -85,20 +100,31 @@ class Certainty {
   /// Whether it is enough to tell where the time at t is.
   bool is_sure(double t) const {
     if (t == 0 && timed_.of.is_whole) return true;  // power 0 is the first point
-    const double x = time_at(t);
-    return TimeProof(timed_, limits_).change_between(x - room(x), x + room(x)) <=
-           kEnough * limits_.max_error;
+    TimeProof proof(timed_, limits_);
+    const double x = time_at(t), enough = kEnough * limits_.max_error;
+    if (proof.change_between(x - room(x), x + room(x)) > enough) return false;
+    const auto [up, down] = backward_at(t);
+    return !(up < down) || proof.change_over({up, down}) <= enough;
   }
   FlatTime cut_at(double t, const ExactSpan& exact) const {
     const double x = time_at(t);
-    if (t == 0 || t == 1) return {x, t};
-    SpanClock clock(timed_);
-    return {x, exact.place_of(x, clock.around(x - room(x)).low, clock.around(x + room(x)).high)};
+    if (t == 0 || t == 1) return {x, t, t};
+    const auto [up, down] = backward_at(t);
+    if (up < down && exact.is_after(x, up) && exact.is_before(x, down)) {
+      return {x, exact.place_of(x, 0.0, up), exact.place_of(x, down, 1.0)};
+    }
+    const BigFloat place = exact.place_of(x, 0.0, 1.0);
+    return {x, place, place};
   }
 
  private:
   static constexpr double kEnough = 1.0 / 16;
 
+  /// Where around t time goes back.
+  std::pair<double, double> backward_at(double t) const {
+    if (!(time_slope(timed_.of, t) < 0)) return {t, t};
+    return {turn_of_time(timed_.of, t, 0), turn_of_time(timed_.of, t, 1)};
+  }
   double time_at(double t) const {
     const auto row = [&](int c) {
       const auto b = timed_.of.bezier_row(c);
@@ -127,10 +153,12 @@ std::vector<TimedPart> cut_parts(const NurbsCurve& curve, const TimedSpan& whole
   }
   std::vector<TimedPart> parts;
   for (std::size_t i = 0; i < flats.size(); ++i) {
-    const auto& [x, t] = flats[i];
-    if (t.sign() > 0) parts.push_back({{exact.before(t, x), x, true, true}, {}, x});
-    if ((t - BigFloat(1.0)).sign() >= 0) continue;
-    parts.push_back({{exact.after(t, x), x, false, true}, {}});
+    const auto& [x, first, last] = flats[i];
+    if (first.sign() > 0)
+      parts.push_back({whole.of.u0, {exact.before(first, x), x, true, true}, {}, x});
+    if ((last - BigFloat(1.0)).sign() >= 0) continue;
+    parts.push_back({whole.of.u0, {exact.after(last, x), x, false, true}, {}});
+    parts.back().jumps = (last - first).sign() > 0;
     if (i + 1 < flats.size()) parts.back().until = x + 0.5 * (flats[i + 1].x - x);
   }
   return parts;
@@ -142,6 +170,7 @@ std::vector<TimedPart> timed_parts(const NurbsCurve& curve, SpanPolynomial span,
                                    const FitLimits& limits) {
   constexpr double kStandstill = 0x1p-30;  // of the mean speed
   const std::vector<Place> places = slow_places(span);
+  const double u0 = span.u0;
   std::vector<double> steep;
   for (const Place& place : places) {
     if (place.t == 0 || place.t == 1) continue;
@@ -149,14 +178,17 @@ std::vector<TimedPart> timed_parts(const NurbsCurve& curve, SpanPolynomial span,
     if (steep.empty() || x > steep.back()) steep.push_back(x);
   }
   std::vector<TimedPart> parts;
-  parts.push_back({{std::move(span)}, {}});
+  parts.push_back({u0, {std::move(span)}, {}});
   const TimedSpan& whole = parts.front().span;
-  std::vector<double> unsure;
+  // A span that is cut once is cut at all of them: what it is told from is one.
+  std::vector<double> still;
+  bool is_sure = true;
   for (const Place& place : places) {
     if (curve.is_periodic() || !(place.speed < kStandstill)) continue;
-    if (!Certainty(whole, limits).is_sure(place.t)) unsure.push_back(place.t);
+    still.push_back(place.t);
+    is_sure = is_sure && Certainty(whole, limits).is_sure(place.t);
   }
-  if (!unsure.empty()) parts = cut_parts(curve, whole, unsure, limits);
+  if (!is_sure) parts = cut_parts(curve, whole, still, limits);
   double after = -std::numeric_limits<double>::infinity();
   for (TimedPart& part : parts) {
     for (const double x : steep) {
@@ -165,27 +197,6 @@ std::vector<TimedPart> timed_parts(const NurbsCurve& curve, SpanPolynomial span,
     after = part.until;
   }
   return parts;
-}
-
-int order_of_time(const SpanPolynomial& span, DoubleDouble t) {
-  constexpr double kNone = 0x1p-40;
-  const DoubleDouble x = coordinate_at(span, 0, t);
-  // Powers of t from there on, of N - x D.
-  std::vector<DoubleDouble> c;
-  for (std::size_t k = 0; k < span.row(0).size(); ++k) {
-    c.push_back(span.row(0)[k] - x * span.row(span.dim)[k]);
-  }
-  for (std::size_t from = 0; from + 1 < c.size(); ++from) {
-    for (std::size_t k = c.size() - 1; k-- > from;) c[k] += c[k + 1] * t;
-  }
-  double largest = 0;
-  for (std::size_t k = 1; k < c.size(); ++k) largest = std::max(largest, std::abs(c[k].hi));
-  int order = 1;
-  while (order + 1 < static_cast<int>(c.size()) &&
-         std::abs(c[static_cast<std::size_t>(order)].hi) <= kNone * largest) {
-    ++order;
-  }
-  return order;
 }
 
 }  // namespace knotwave::curves

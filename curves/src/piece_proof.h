@@ -39,13 +39,14 @@ class TimeProof {
   double change_after(double x);
   /// How far they may move while nobody knows whether time is before `early` or after `late`.
   double change_between(double early, double late);
+  /// How far they move at most in an interval of t.
+  double change_over(const SpanClock::Around& t) const;
 
  private:
   /// Coordinate c (row dim: the weight) over [t.low, t.high].
   Bernstein part(int c, const SpanClock::Around& t) const;
   double error_over(const FitPiece& piece, double found, double settled);
   double error_at(const FitPiece& piece, double x);
-  double change_over(const SpanClock::Around& t) const;
   /// The interval of t that holds both, whichever comes first.
   SpanClock::Around between(double early, double late);
 

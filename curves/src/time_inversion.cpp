@@ -62,23 +62,32 @@ bool stands_still(const SpanPolynomial& span) {
 }
 
 /// Where a span's last piece ends: its last time, rounded. Where that is earlier, the double there
-/// is played by the next span; if y moves much until the span is over, this one keeps it.
-double end_of(const TimedSpan& span, bool is_last, const FitLimits& limits, FittedPieces& pieces) {
-  constexpr double kMuch = 0.05;
-  const DoubleDouble end = span.time_at(span.last());
+/// is played by the next span, or holds the last value; if y moves much until the span is over,
+/// this one keeps it.
+double end_of(const NurbsCurve& curve, const TimedPart& part, bool is_last, const FitLimits& limits,
+              FittedPieces& pieces) {
+  const double much = is_last ? 1 : 0.05;
+  const DoubleDouble end = part.span.time_at(part.span.last());
   if (!(end.lo > 0)) return end.hi;
-  const double change = TimeProof(span, limits).change_after(end.hi);
-  if (!is_last && change > kMuch * limits.max_error) return next_up(end.hi);
+  const double change = TimeProof(part.span, limits).change_after(end.hi);
+  if (change > much * limits.max_error) {
+    return ExactSpan(curve, part.u0).is_after(end.hi, 1.0) ? next_up(end.hi) : end.hi;
+  }
   pieces.note_error(change, end.hi);
   return end.hi;
 }
 
-/// The first time, rounded. The value there is that of the start, even if that is later.
-double start_of(const TimedSpan& span, const FitLimits& limits, FittedPieces& pieces) {
-  const DoubleDouble start = span.time_at(span.first());
-  if (start.lo < 0) {
-    pieces.note_error(TimeProof(span, limits).change_before(start.hi), start.hi);
+/// The first time, rounded. Where that is later it has the value of the start all the same, or, if
+/// y moves much until then, the double before has.
+double start_of(const NurbsCurve& curve, const TimedPart& part, const FitLimits& limits,
+                FittedPieces& pieces) {
+  const DoubleDouble start = part.span.time_at(part.span.first());
+  if (!(start.lo < 0)) return start.hi;
+  const double change = TimeProof(part.span, limits).change_before(start.hi);
+  if (change > limits.max_error) {
+    return ExactSpan(curve, part.u0).is_before(start.hi, 0.0) ? next_down(start.hi) : start.hi;
   }
+  pieces.note_error(change, start.hi);
   return start.hi;
 }
 
@@ -113,6 +122,7 @@ bool fit_span(const std::vector<TimedPart>& parts, double x_a, double x_b, const
   for (const TimedPart& part : parts) {
     const double end = std::min(part.until, x_b);
     if (!(end > x_a)) continue;
+    if (part.jumps) pieces.right.clear();
     if (!fit_part(part, x_a, end, limits, pieces)) return false;
     x_a = end;
   }
@@ -184,28 +194,20 @@ std::vector<double> values_at(const SpanPolynomial& span, double t) {
 }
 
 std::vector<TimedPart> whole_part(SpanPolynomial span) {
+  const double u0 = span.u0;
   std::vector<TimedPart> parts;
-  parts.push_back({{std::move(span)}, {}});
+  parts.push_back({u0, {std::move(span)}, {}});
   return parts;
 }
 
 /// error_bound_missed, with the place.
 Error missed_at(const NurbsCurve& curve, const FittedPieces& pieces,
                 const CompileOptions& options) {
-  const double x = pieces.worst_at, u = parameter_at_time(curve, x);
-  std::string why = "at x = " + base::number_text(x) + ", u = " + base::number_text(u);
-  int order = 1;
-  for (const SpanPolynomial& span : span_polynomials(HomogeneousCurve(curve))) {
-    if (!(span.u0 <= u && u <= span.u1)) continue;
-    const DoubleDouble t =
-        DoubleDouble::difference(u, span.u0) / DoubleDouble::difference(span.u1, span.u0);
-    order = std::max(order, order_of_time(span, t));
-  }
-  why += order > 1 ? ", where time stands still to order " + std::to_string(order) +
-                         "; ask for a larger error, move the points so that time goes on there, "
-                         "or play both coordinates by u (compile_parametric)"
-                   : "; this is rounding";
-  return missed_bound(curve, pieces.max_error, options.max_error, why);
+  const double x = pieces.worst_at;
+  return missed_bound(curve, pieces.max_error, options.max_error,
+                      "at x = " + base::number_text(x) +
+                          ", u = " + base::number_text(parameter_at_time(curve, x)) +
+                          "; that near doubles cannot follow y, ask for a larger error");
 }
 
 }  // namespace
@@ -231,9 +233,9 @@ Result<ProgramParts> inverted_parts(const NurbsCurve& curve, const CompileOption
     const bool is_last = &span == &spans.back(), is_line = is_affine(span);
     const std::vector<TimedPart> timed =
         is_line ? whole_part(std::move(span)) : timed_parts(curve, std::move(span), limits);
-    const double x_a =
-        pieces.breaks.empty() ? start_of(timed.front().span, limits, pieces) : pieces.breaks.back();
-    const double x_b = end_of(timed.back().span, is_last, limits, pieces);
+    const double x_a = pieces.breaks.empty() ? start_of(curve, timed.front(), limits, pieces)
+                                             : pieces.breaks.back();
+    const double x_b = end_of(curve, timed.back(), is_last, limits, pieces);
     if (!(x_b > x_a)) continue;
     if (pieces.breaks.empty()) parts.start_values = std::move(start_values);
     bool enough = true;

@@ -276,6 +276,43 @@ TEST(CompileTime, TooFewPiecesAreRefusedWithBothErrors) {
       << program.error().message;
 }
 
+// Unclamped: the first and the last time are thirds, and y is vertical there.
+TEST(CompileTime, VerticalEndsThatAreNoDoublesAreWithinWhatIsAsked) {
+  for (const double side : {1.0, -1.0}) {
+    CurveSpec spec;
+    spec.name = "thirds";
+    spec.degree = 3;
+    spec.dim = 2;
+    spec.points = {5 * side, 0, 0, 1, 5 * side, 3, 15 * side, -1};
+    if (side < 0) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        std::swap(spec.points[2 * i], spec.points[6 - 2 * i]);
+        std::swap(spec.points[2 * i + 1], spec.points[7 - 2 * i]);
+      }
+    }
+    spec.knots = {-3, -2, -1, 0, 1, 2, 3, 4};
+    const NurbsCurve curve = made(spec);
+    const CurveProgram program = compiled(curve, {1e-9, 4096, {}});
+    // x = 5/3 + 5 u^2 - ..., and the double beside 5/3 is 2^-52 / 3 above.
+    double end[2];
+    curve.evaluate(side > 0 ? 0 : 1, end);
+    const double value = end[1], by_u = 1.5, u = std::sqrt(0x1p-52 / 15);
+    EXPECT_NEAR(program.at_u(side * (5.0 / 3)), value + by_u * u, 1e-9);
+    EXPECT_GT(std::abs(program.at_u(side * (5.0 / 3)) - value), 5e-9);
+    EXPECT_EQ(program.at_u(side > 0 ? program.u_min() : program.u_max()), value);
+  }
+}
+
+TEST(CompileTime, PolylinesFinerThanDoublesAreRefusedWithThePlace) {
+  CompileOptions options;
+  options.max_error = 1e-18;
+  const auto program = compile_function(timed(1, {0, 0, 0.1, 0.3, 1, 1}), options);
+  ASSERT_FALSE(program);
+  EXPECT_EQ(program.error().code, ErrorCode::error_bound_missed);
+  EXPECT_NE(program.error().message.find("1e-18 was asked: at x = 0.1, u = "), std::string::npos)
+      << program.error().message;
+}
+
 TEST(CompileTime, ControlsAreRefused) {
   CompileOptions options;
   options.controls = {{ControlRange::Kind::weight, 1, 0, 0.5, 2}};

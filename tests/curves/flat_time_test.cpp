@@ -14,6 +14,7 @@
 #include "knotwave/curves/compile.h"
 
 #include "curves/random_curves.h"
+#include "curves/time_oracle.h"
 #include "support/seed.h"
 
 namespace knotwave::curves {
@@ -167,7 +168,7 @@ class Oracle {
     const auto is_before = [&](Wide s) { return sign * ahead(sign * s) < 0; };
     for (int step = 0; step < 400 && !is_before(high / 2); ++step) high /= 2;
     Wide low = high / 2;
-    for (int step = 0; step < 70; ++step) {
+    for (int step = 0; step < 106; ++step) {
       const Wide middle = (low + high) / 2;
       (is_before(middle) ? low : high) = middle;
     }
@@ -285,7 +286,7 @@ void expect_within(const Flat& flat, double asked) {
   ASSERT_TRUE(program) << program.error().message;
   EXPECT_LE(program->max_error(), asked);
   Draws draw(support::test_seed(), flat.curve.degree());
-  EXPECT_LE(worst_of(flat, *program, draw, 80), program->max_error());
+  EXPECT_LE(worst_of(flat, *program, draw, 30), program->max_error());
 }
 
 TEST(CompileFlatTime, OddPowersOfTimeMeetEveryBoundAtEveryDouble) {
@@ -323,6 +324,63 @@ TEST(CompileFlatTime, AtAnEndOrAKnotToo) {
       const auto flat = flat_of(plan);
       ASSERT_TRUE(flat);
       expect_within(*flat, 1e-7);
+    }
+  }
+}
+
+/// Time (2 u - 1)^p + x0 - slope (2 u - 1), its points rounded: it goes back in the middle.
+NurbsCurve dipping_curve(int degree, double x0, double slope) {
+  CurveSpec spec;
+  spec.name = "dip";
+  spec.degree = degree;
+  spec.dim = 2;
+  for (int i = 0; i <= degree; ++i) {
+    const double side = (degree - i) % 2 == 0 ? 1 : -1;
+    spec.points.push_back(side + x0 - slope * (2.0 * i / degree - 1));
+    spec.points.push_back(double(i) / degree);
+  }
+  return made(std::move(spec));
+}
+
+/// How far y is from that of the nearest place on the two branches where time goes on.
+double error_of_branches(const NurbsCurve& curve, double x, double y) {
+  const auto time = [&](Wide t) { return test::segment_at(curve.points(), 0, t); };
+  const auto nearest = [&](Wide low, Wide high) {
+    if (time(low) > Wide(x) || time(high) < Wide(x)) return 1.0;
+    for (int step = 0; step < 110; ++step) {
+      const Wide middle = (low + high) / 2;
+      (time(middle) < Wide(x) ? low : high) = middle;
+    }
+    return std::abs(static_cast<double>(test::segment_at(curve.points(), 1, low) - Wide(y)));
+  };
+  const auto turn = [&](Wide from, Wide to) {  // from the middle to where time goes back no more
+    for (int step = 0; step < 110; ++step) {
+      const Wide middle = (from + to) / 2, beside = (to - from) * Wide(1e-6);
+      const bool is_back =
+          from < to ? time(middle + beside) < time(middle) : time(middle) < time(middle + beside);
+      (is_back ? from : to) = middle;
+    }
+    return from;
+  };
+  return std::min(nearest(0, turn(0.5, 0)), nearest(turn(0.5, 1), 1));
+}
+
+TEST(CompileFlatTime, TimeThatGoesBackWithinRoundingCountsAsStandingStill) {
+  for (const int degree : {5, 7}) {
+    for (const double x0 : {0.0, 0.3, 1.0}) {
+      for (const int exponent : {-52, -44, -40}) {
+        const NurbsCurve curve = dipping_curve(degree, x0, std::ldexp(1, exponent));
+        const auto program = compile_function(curve);
+        ASSERT_TRUE(program) << program.error().message;
+        Draws draw(support::test_seed(), exponent);
+        for (int i = 0; i < 40; ++i) {
+          const double gap = std::pow(10.0, -draw.between(0, 18));
+          for (const double x : {x0 + gap, x0 - gap}) {
+            EXPECT_LE(error_of_branches(curve, x, program->at_u(x)), program->max_error() + 1e-12)
+                << degree << ", " << x0 << ", 2^" << exponent << " at " << x - x0;
+          }
+        }
+      }
     }
   }
 }
@@ -406,10 +464,11 @@ Tally tally_of_flats(int count) {
       continue;
     }
     ++tally.compiled;
-    const double worst = worst_of(*flat, *program, draw, 60);
+    const double worst = worst_of(*flat, *program, draw, 30);
     tally.worst = std::max(tally.worst, worst / program->max_error());
     EXPECT_LE(worst, program->max_error())
-        << "curve " << i << " of degree " << flat->curve.degree() << ", asked " << asked;
+        << "curve " << i << " is " << worst / program->max_error() << " of the bound, degree "
+        << flat->curve.degree() << ", asked " << asked;
   }
   std::printf("%d compiled, %d refused, at worst %.4f of the bound\n", tally.compiled,
               tally.refused, tally.worst);
@@ -417,7 +476,7 @@ Tally tally_of_flats(int count) {
 }
 
 TEST(CompileFlatTime, NoHostileCurveIsFartherThanTheProgramSays) {
-  const Tally tally = tally_of_flats(support::test_count(40));
+  const Tally tally = tally_of_flats(support::test_count(25));
   EXPECT_GT(tally.compiled, 19 * tally.refused);
   EXPECT_GT(tally.worst, 0.9) << "a bound that is never nearly reached is too wide";
 }

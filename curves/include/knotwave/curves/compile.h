@@ -37,13 +37,14 @@ Result<NurbsCurve> curve_with(const NurbsCurve& curve, const std::vector<Control
 /// rounding would be above max_error), above that pieces of degree 7 are fitted, their error
 /// proved; they meet in value and, to rounding, in slope. dim 2: x is the parameter (time) and y
 /// the value, the inversion is baked into explicit pieces (u_min = x at the start). Vertical
-/// tangents are allowed and meet max_error at every double (those of order 5 and more inside a span
-/// may be refused: error_bound_missed); where x stands still y jumps. docs/compile.md has the
-/// method. Errors: not_a_function (x goes back: the message gives the interval of u), not_scalar
-/// (dim > 2), error_bound_missed, control_conflict (point and weight of the same index, or two
-/// controls for the same number), value_out_of_range (a control's range leaves the limits of curve
-/// files or leaves out the value written there), empty_domain (2-D: x never moves), unsupported
-/// (controls on a 2-D curve or on degree > 7).
+/// tangents are allowed and meet max_error at every double, to whatever order time stands still.
+/// Where x stands still for a while y jumps; where it goes back by less than 2^-44 of the largest
+/// |x|, which counts as rounding, y is that of one of the places where time is x. docs/compile.md
+/// has the method. Errors: not_a_function (x goes back further: the message gives the interval of
+/// u), not_scalar (dim > 2), error_bound_missed, control_conflict (point and weight of the same
+/// index, or two controls for the same number), value_out_of_range (a control's range leaves the
+/// limits of curve files or leaves out the value written there), empty_domain (2-D: x never moves),
+/// unsupported (controls on a 2-D curve or on degree > 7).
 Result<CurveProgram> compile_function(const NurbsCurve& curve, const CompileOptions& options = {});
 
 /// Every coordinate as a function of u (waveforms, orbits, arcs). Errors as above but
@@ -60,10 +61,10 @@ Result<CurveProgram> compile_polynomial(const NurbsCurve& curve,
 /// first control point P0 and those that follow it, B1 the second, P1. A join at value y0 and slope
 /// s plays
 ///   program(u) + dp0 * basis0(u) + dp1 * basis1(u),
-/// which begins at y0 with slope s and, past the first p spans of the section, is the program to
-/// the bit (both bases are exactly 0 there). P2 .. P(p-2) follow P0 by a share: all of its step if
-/// level with it, nothing at the hull's edges, so that a join is no rougher than the curve is drawn
-/// and no point leaves the hull. docs/compile.md, Joins.
+/// which begins at y0 with slope s and, from u_basis_end on (p spans later at most, 2 of degree 1),
+/// is the program to the bit (both bases are exactly 0 there). P2 .. P(p-2) follow P0 by a share:
+/// all of its step if level with it, nothing at the hull's edges, so that a join is no rougher than
+/// the curve is drawn and no point leaves the hull. docs/compile.md, Joins.
 struct JoinProgram {
   double u_join = 0;
   CurveProgram basis;  ///< dim 2: basis0, basis1, over [u_join, u_end]

@@ -191,7 +191,8 @@ void EnvelopeVoice::watch_one(const EnvelopePatchProgram& program, std::size_t i
     if (now > passed) {
       const double place = watched_place(part, event) + static_cast<double>(passed + 1) * length;
       const double samples = (place - envelope.unfolded_u(before)) / envelope.u_per_sample();
-      passages.add({std::min(time_after(before, samples + 0x1p-33), here), static_cast<int>(index)});
+      passages.add(
+          {std::min(time_after(before, samples + 0x1p-33), here), static_cast<int>(index)});
       passed = now;
     }
     if (here == until) return;

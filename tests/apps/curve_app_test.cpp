@@ -87,7 +87,7 @@ TEST_F(CurveApp, TheHelpOfEvalShowsWhatItPrints) {
 
 TEST_F(CurveApp, ChecksEveryKindOfFileThatIsShipped) {
   std::vector<std::string> files = {"check"};
-  for (const char* folder : {"curves", "patches", "banks"}) {
+  for (const char* folder : {"curves", "patches", "banks", "envelopes"}) {
     for (const auto& entry : std::filesystem::directory_iterator(KNOTWAVE_SOURCE_DIR "/examples/" +
                                                                  std::string(folder))) {
       if (entry.path().extension() == ".toml") files.push_back(entry.path().string());

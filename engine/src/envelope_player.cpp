@@ -13,7 +13,7 @@ namespace knotwave::engine {
 namespace {
 
 /// Free for what must go out: the ends of place notes.
-constexpr std::size_t kKeptForEnds = 2 * kMaxPlaceEvents;
+constexpr std::size_t kKeptForEnds = 2 * std::size_t{kMaxPlaceEvents};
 
 }  // namespace
 

@@ -60,11 +60,20 @@ bool MidiEntry::is_clock(const base::MidiEvent& event, std::int64_t time_ns,
   return true;
 }
 
+PortNotes& MidiEntry::notes_of(std::size_t port) noexcept {
+  const std::uint32_t bit = std::uint32_t{1} << port;
+  if ((must_forget_.load(std::memory_order_relaxed) & bit) != 0) {
+    must_forget_.fetch_and(~bit, std::memory_order_relaxed);
+    notes_[port] = {};
+  }
+  return notes_[port];
+}
+
 void MidiEntry::heard(const base::MidiEvent& event, std::int64_t time_ns) noexcept {
-  const std::size_t port = event.port % notes_.size();
+  const std::size_t port = event.port % kStreamPort;
   if ((left_out_.load(std::memory_order_relaxed) >> port & 1) != 0) return;
   if (is_clock(event, time_ns, port)) return;
-  notes_[port].heard(event);
+  notes_of(port).heard(event);
   const auto out = learned(event);
   for (int i = 0; i < out.count; ++i) {
     gate_.push(static_cast<int>(port),
@@ -73,8 +82,8 @@ void MidiEntry::heard(const base::MidiEvent& event, std::int64_t time_ns) noexce
 }
 
 void MidiEntry::lost(int port) noexcept {
-  const std::size_t index = static_cast<std::size_t>(port) % notes_.size();
-  notes_[index].release([&](std::uint8_t status, std::uint8_t first, std::uint8_t second) {
+  const std::size_t index = static_cast<std::size_t>(port) % kStreamPort;
+  notes_of(index).release([&](std::uint8_t status, std::uint8_t first, std::uint8_t second) {
     engine::LiveMessage message;
     message.bytes[0] = status;
     message.bytes[1] = first;
@@ -84,11 +93,11 @@ void MidiEntry::lost(int port) noexcept {
 }
 
 void MidiEntry::follow_stream_sender() noexcept {
-  if (must_forget_.exchange(false, std::memory_order_relaxed)) stream_notes_ = {};
   if (!has_sender_left_.exchange(false, std::memory_order_relaxed)) return;
-  stream_notes_.release([this](std::uint8_t status, std::uint8_t first, std::uint8_t second) {
-    exact_.push_back({{0, 0}, {status, first, second}});
-  });
+  notes_of(kStreamPort)
+      .release([this](std::uint8_t status, std::uint8_t first, std::uint8_t second) {
+        exact_.push_back({{0, 0}, {status, first, second}});
+      });
 }
 
 std::span<const base::MidiEvent> MidiEntry::translated(std::span<const base::MidiEvent> exact,
@@ -100,7 +109,7 @@ std::span<const base::MidiEvent> MidiEntry::translated(std::span<const base::Mid
     const auto offset_ns =
         static_cast<std::int64_t>(static_cast<double>(event.time.sample) * 1e9 / rate_hz);
     if (is_clock(event, time_ns + offset_ns, kStreamPort)) continue;
-    stream_notes_.heard(event);
+    notes_of(kStreamPort).heard(event);
     const auto out = learned(event);
     for (int i = 0; i < out.count; ++i) {
       exact_.push_back(out.messages[static_cast<std::size_t>(i)]);
@@ -111,8 +120,7 @@ std::span<const base::MidiEvent> MidiEntry::translated(std::span<const base::Mid
 }
 
 void MidiEntry::forget() noexcept {
-  for (PortNotes& notes : notes_) notes = {};
-  must_forget_ = true;
+  must_forget_ = ~std::uint32_t{0};
   const Lock lock(lock_, kEndless);
   if (learn_) learn_->controllers_went_back();
 }

@@ -80,12 +80,14 @@ class MidiEntry {
   /// The most that PortNotes lets go: three pedals and 128 keys of 16 channels.
   static constexpr std::size_t kMostHeld = std::size_t{16} * (3 + 128);
 
+  PortNotes& notes_of(std::size_t port) noexcept;
   void follow_stream_sender() noexcept;
   engine::MidiLearn::Out learned(const base::MidiEvent& event) noexcept;
   bool is_clock(const base::MidiEvent& event, std::int64_t time_ns, std::size_t port) noexcept;
 
   EngineGate& gate_;
-  std::array<PortNotes, io::kMaxMidiPorts> notes_;
+  std::array<PortNotes, kStreamPort + 1> notes_;  ///< each of the thread that hears its port
+  std::atomic<std::uint32_t> must_forget_{0};     ///< bit p: what port p held is over
   std::array<engine::MidiClock, kStreamPort + 1> clocks_;
   std::atomic<std::uint32_t> left_out_{0};
   std::atomic<float> bpm_{0}, jitter_ms_{0};
@@ -93,8 +95,7 @@ class MidiEntry {
   std::optional<engine::MidiLearn> learn_;
   std::atomic<bool> has_learn_{false};
   std::vector<base::MidiEvent> exact_;
-  PortNotes stream_notes_;  ///< of the audio thread
-  std::atomic<bool> has_sender_left_{false}, must_forget_{false};
+  std::atomic<bool> has_sender_left_{false};
 };
 
 }  // namespace knotwave::synth

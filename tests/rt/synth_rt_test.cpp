@@ -40,6 +40,8 @@ TEST(SynthRt, MessagesOfCablesAndOfTheStreamPassWithoutAllocationAndSystemCalls)
       }
       kept += entry.translated(block, static_cast<std::int64_t>(i) * 1000000, 48000).size();
       entry.lost(static_cast<int>(i % 16));
+      if (i % 3 == 0) entry.stream_sender_left();
+      if (i % 7 == 0) entry.forget();
     }
   };
   for (const Gate gate : {Gate::sanitizer, Gate::system}) {

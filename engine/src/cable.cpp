@@ -22,6 +22,17 @@ std::int64_t message_bytes(const base::MidiEvent& event) KNOTWAVE_RT {
   return status >= 0xC0 && status < 0xE0 ? 2 : 3;
 }
 
+bool ends_notes(const base::MidiEvent& event) KNOTWAVE_RT {
+  constexpr int kAllSoundOff = 120, kAllNotesOff = 123, kSustain = 64;
+  const base::MidiStatus status = event.status();
+  if (status == base::MidiStatus::note_off) return true;
+  if (status == base::MidiStatus::note_on) return event.bytes[2] == 0;
+  if (status != base::MidiStatus::control_change) return false;
+  const int number = event.bytes[1];
+  return number == kAllSoundOff || number >= kAllNotesOff ||
+         (number == kSustain && event.bytes[2] < 64);
+}
+
 Cable::Cable(const OutputPortConfig& config) : config_(config) {
   const bool is_usb = config.wire == PortSpec::Wire::usb;
   byte_ticks_ = is_din() ? ticks(1 / kDinBytesPerSecond, config.rate_hz) : 0;

@@ -14,6 +14,9 @@ namespace knotwave::engine {
 /// Bytes of a message with its status byte.
 std::int64_t message_bytes(const base::MidiEvent& event) KNOTWAVE_RT;
 
+/// Note off, all sound off, all notes off: never left out while anything else is there.
+bool ends_notes(const base::MidiEvent& event) KNOTWAVE_RT;
+
 class Cable {
  public:
   explicit Cable(const OutputPortConfig& config);
@@ -35,6 +38,7 @@ class Cable {
   /// A message came to be passed through while `waiting_bytes` of such waited.
   void count_arrival(std::int64_t bytes, std::int64_t waiting_bytes) KNOTWAVE_RT;
   void count_wait(Ticks waited) KNOTWAVE_RT;
+  void count_loss() KNOTWAVE_RT { ++counters_.lost; }
   void update_use(Ticks now) KNOTWAVE_RT;
   const PortCounters& counters() const KNOTWAVE_RT { return counters_; }
 

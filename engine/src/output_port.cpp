@@ -26,7 +26,7 @@ struct Waiting {
 /// A ring of messages in the order in which they came.
 class Queue {
  public:
-  Queue() : ring_(OutputPort::kMostWaiting) {}
+  Queue() : ring_(OutputPort::kMostWaiting + OutputPort::kEndings) {}
   std::size_t size() const KNOTWAVE_RT { return size_; }
   const Waiting& operator[](std::size_t i) const KNOTWAVE_RT {
     return ring_[(begin_ + i) % ring_.size()];
@@ -349,7 +349,11 @@ bool OutputPort::post(const MidiEvent& event, OutputPriority priority, bool is_t
   Queue& queue = priority == OutputPriority::clock ? state_->clocks : state_->messages;
   const std::int64_t bytes = message_bytes(event);
   if (is_thru) state_->cable.count_arrival(bytes, state_->waiting_thru_bytes);
-  if (state_->clocks.size() + state_->messages.size() >= kMostWaiting) return false;
+  const std::size_t room = ends_notes(event) ? kMostWaiting + kEndings : kMostWaiting;
+  if (state_->clocks.size() + state_->messages.size() >= room) {
+    state_->cable.count_loss();
+    return false;
+  }
   if (is_thru) state_->waiting_thru_bytes += bytes;
   queue.push({event, priority, is_thru});
   return true;

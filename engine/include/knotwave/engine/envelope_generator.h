@@ -12,6 +12,7 @@
 #include "knotwave/base/result.h"
 #include "knotwave/engine/envelope_patch_program.h"
 #include "knotwave/engine/envelope_player.h"
+#include "knotwave/engine/midi_clock.h"
 #include "knotwave/engine/output_port.h"
 
 namespace knotwave::engine {
@@ -21,6 +22,11 @@ struct EnvelopeGeneratorConfig {
   std::uint64_t seed = 1;
   bool thru = false;  ///< all that comes in goes out again, merged, to the first port
   double bpm = 120;   ///< until a clock or a tempo says another
+  /// Patches play ahead of the cables by as much (0..0.05), rounded down to samples: a message that
+  /// must begin before the event which causes it, so that it has come in time, does so. Who plays
+  /// live sends what begins at s at s plus a delay of at least this. 0.97 ms covers a controller on
+  /// a DIN cable.
+  double lead_s = 0.001;
 };
 
 /// What the generator sends. All [audio].
@@ -47,26 +53,34 @@ struct RouteStatus {
 class EnvelopeGenerator {
  public:
   /// [control] The programs must outlive it. Ports of one name are one port: what the patches say
-  /// of it must agree. Errors: value_out_of_range, control_conflict (two outputs onto one
-  /// destination, two ports of one name that differ), capacity.
+  /// of it must agree. Outputs of patches whose [trigger] programs differ may share a destination:
+  /// the one that played last has it. Errors: value_out_of_range, control_conflict (two outputs
+  /// onto one destination, two ports of one name that differ).
   static Result<std::unique_ptr<EnvelopeGenerator>> create(
       const EnvelopeGeneratorConfig& config, std::span<const EnvelopePatchProgram* const> patches);
   ~EnvelopeGenerator();
 
-  const std::vector<PortSpec>& ports() const;  ///< [control]
+  const std::vector<PortSpec>& ports() const;  ///< [control] one without a name: our own
 
-  /// In order of time, none before now(). MIDI clock, start, stop and song position set the tempo
-  /// and the position. [audio]
-  void handle(const base::MidiEvent& event) KNOTWAVE_RT;
-  void set_tempo(base::SampleTime time, std::uint32_t microseconds_per_quarter) KNOTWAVE_RT;
-  /// Plays up to sample `until`: all that begins before it is sent. [audio]
+  /// In order of time; one before now() is heard now. It acts when advance() comes there. MIDI
+  /// clock, start, stop and song position set the tempo and the position. False: kMostEvents wait
+  /// (kMostEndings more where it ends notes), it is lost. [audio]
+  bool handle(const base::MidiEvent& event) KNOTWAVE_RT;
+  bool set_tempo(base::SampleTime time, std::uint32_t microseconds_per_quarter) KNOTWAVE_RT;
+  static constexpr std::size_t kMostEvents = 8192;
+  static constexpr std::size_t kMostEndings = 2048;
+  /// Plays up to sample `until`: all that cables begin before `until` - lead_s is sent, in order of
+  /// time for each port, and OSC before `until`. Any split gives the same. [audio]
   void advance(std::int64_t until, GeneratorSink& sink) KNOTWAVE_RT;
   /// Closes the gates, ends the notes it sent and brings every destination to its rest value, as
-  /// fast as the cables let it. advance() goes on until is_at_rest(). [audio]
+  /// fast as the cables let it; what is handled from then on is left out. advance() goes on until
+  /// is_at_rest(). [audio]
   void go_to_rest() KNOTWAVE_RT;
   bool is_at_rest() const KNOTWAVE_RT;
 
-  std::int64_t now() const KNOTWAVE_RT;
+  std::int64_t now() const KNOTWAVE_RT;   ///< of the patches
+  std::int64_t lost() const KNOTWAVE_RT;  ///< what handle() had no room for
+  MidiClockStatus clock_status() const KNOTWAVE_RT;
   const PortCounters& port_counters(int port) const KNOTWAVE_RT;
   std::vector<RouteStatus> routes() const;  ///< [control] by the thread that calls advance()
 

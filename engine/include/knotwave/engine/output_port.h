@@ -61,6 +61,7 @@ struct PortCounters {
   std::int64_t thru_bytes = 0;      ///< of them those that were passed through
   std::int64_t overload_bytes = 0;  ///< thru that came while more than 20 ms of it waited
   double most_waiting_s = 0;        ///< of a thru message
+  std::int64_t lost = 0;            ///< messages for which there was no room
   double use = 0;                   ///< 0..1 of the budget, over the last second; 0: no budget
 };
 
@@ -77,7 +78,8 @@ class PortSink {
 class OutputPort {
  public:
   static constexpr int kMostLanes = 512;
-  static constexpr std::size_t kMostWaiting = 1024;  ///< thru messages; more are lost and counted
+  static constexpr std::size_t kMostWaiting = 1024;  ///< messages; more are lost and counted
+  static constexpr std::size_t kEndings = 1024;      ///< of them beyond, for what ends notes
 
   /// [control] Errors: value_out_of_range.
   static Result<std::unique_ptr<OutputPort>> create(const OutputPortConfig& config);
@@ -95,7 +97,7 @@ class OutputPort {
 
   /// A message that must go out, before lanes of lower priority: notes, clock, thru. Times rise.
   /// All but clocks keep their order, so one is as urgent as the most urgent behind it. False:
-  /// kMostWaiting were waiting, it is lost. System exclusive is kept by reference until it is sent.
+  /// kMostWaiting were waiting (kEndings more where it ends notes), it is lost. System exclusive is kept by reference until it is sent.
   /// Controllers that change what a lane's receiver holds (its other half, CC 6, 38, 96 to 101,
   /// 121) are minded: the lane says it again. [audio]
   bool post(const base::MidiEvent& event, OutputPriority priority, bool is_thru) KNOTWAVE_RT;

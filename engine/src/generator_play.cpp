@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+// The envelope generator from sample to sample: events, players, rows, cables.
+#include <algorithm>
+
+#include "knotwave/base/fp_state.h"
+
+#include "cable.h"
+#include "generator_state.h"
+
+namespace knotwave::engine {
+namespace {
+
+using base::MidiEvent;
+using base::MidiStatus;
+
+OutputPriority priority_of(const MidiEvent& event) KNOTWAVE_RT {
+  if (event.bytes[0] >= 0xF8) return OutputPriority::clock;
+  const bool is_note =
+      event.status() == MidiStatus::note_on || event.status() == MidiStatus::note_off;
+  return is_note ? OutputPriority::note : OutputPriority::control;
+}
+
+/// Hands on what a port sends, with the port's number.
+class NumberedSink final : public PortSink {
+ public:
+  NumberedSink(GeneratorSink& sink, int port) : sink_(sink), port_(port) {}
+  void send(const MidiEvent& event) KNOTWAVE_RT override { sink_.midi(port_, event); }
+
+ private:
+  GeneratorSink& sink_;
+  int port_;
+};
+
+}  // namespace
+
+bool EnvelopeGenerator::handle(const MidiEvent& event) KNOTWAVE_RT {
+  Event told;
+  told.midi = event;
+  return state_->push(told);
+}
+
+bool EnvelopeGenerator::set_tempo(base::SampleTime time,
+                                  std::uint32_t microseconds_per_quarter) KNOTWAVE_RT {
+  Event told;
+  told.kind = Event::Kind::tempo;
+  told.midi.time = time;
+  told.microseconds_per_quarter = microseconds_per_quarter;
+  return state_->push(told);
+}
+
+bool EnvelopeGenerator::State::push(const Event& event) KNOTWAVE_RT {
+  if (is_resting) return true;
+  const bool is_ending = event.kind == Event::Kind::midi && ends_notes(event.midi);
+  if (event_count >= (is_ending ? kMostEvents + kMostEndings : kMostEvents)) {
+    ++lost;
+    return false;
+  }
+  events[(first_event + event_count++) % events.size()] = event;
+  return true;
+}
+
+void EnvelopeGenerator::advance(std::int64_t until, GeneratorSink& sink) KNOTWAVE_RT {
+  const base::FpStateGuard guard;
+  State& s = *state_;
+  while (s.now < until) {
+    s.take_events();
+    s.play_block(s.block_length(until), sink);
+  }
+}
+
+void EnvelopeGenerator::State::take_events() KNOTWAVE_RT {
+  while (event_count != 0 && base::first_sample(events[first_event].time()) <= now) {
+    const Event event = events[first_event];
+    first_event = (first_event + 1) % events.size();
+    --event_count;
+    take_event(event);
+  }
+  note_addresses(now);
+}
+
+void EnvelopeGenerator::State::take_event(const Event& event) KNOTWAVE_RT {
+  for (LaneRow& row : rows) row.still = 0;
+  if (event.kind == Event::Kind::midi) {
+    post_thru(event.midi);
+    if (clock.handle(event.midi)) {
+      const Event tempo = clock.tempo_event();
+      for (auto& player : players) player->handle(tempo);
+    }
+  }
+  for (std::size_t i = 0; i < players.size(); ++i) {
+    players[i]->handle(event);
+    post_player_messages(static_cast<int>(i));
+  }
+  note_addresses(now);
+  note_newest(event);
+}
+
+std::size_t EnvelopeGenerator::State::block_length(std::int64_t until) const KNOTWAVE_RT {
+  std::int64_t n = std::min<std::int64_t>(until - now, kBlock);
+  if (event_count != 0) {
+    n = std::min(n, base::first_sample(events[first_event].time()) - now);
+  }
+  return static_cast<std::size_t>(n);
+}
+
+void EnvelopeGenerator::State::play_block(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT {
+  for (std::size_t i = 0; i < players.size(); ++i) {
+    EnvelopePlayer& player = *players[i];
+    player.render(n);
+    if (!is_resting) post_player_messages(static_cast<int>(i));
+    if (predict != 0) player.predict(predict);
+  }
+  fill_rows(n);
+  send_osc(n, sink);
+  render_ports(n, sink);
+  now += static_cast<std::int64_t>(n);
+  for (LaneRow& row : rows) {
+    std::copy_n(row.values.begin() + static_cast<std::ptrdiff_t>(n), lead, row.values.begin());
+  }
+  visit_told();
+  if (now >= next_snapshot) take_snapshot();
+}
+
+/// Voices that were given another channel or key: their lanes follow when the cables come there.
+void EnvelopeGenerator::State::note_addresses(std::int64_t sample) KNOTWAVE_RT {
+  if (is_resting) return;
+  for (std::size_t i = 0; i < table.lanes.size(); ++i) {
+    const GeneratorLane& lane = table.lanes[i];
+    if (lane.voice < 0) continue;
+    GeneratorRoute& route = table.routes[static_cast<std::size_t>(lane.routes.front())];
+    const auto patch = static_cast<std::size_t>(route.patch);
+    const auto voice = players[patch]->voice(lane.voice);
+    // What no key triggers has its channel from the start.
+    const bool is_of_keys = patches[patch]->spec().trigger.kind == TriggerSpec::Kind::note;
+    if (!voice.has_begun && is_of_keys) continue;
+    AddressChange change{sample, static_cast<int>(i), voice.channel, voice.key};
+    if (route.spec.channel != 0) change.channel = route.spec.channel;
+    if (route.spec.kind != OutputKind::poly_pressure) change.key = 0;
+    const AddressChange& last = wanted[i];
+    if (last.channel == change.channel && last.key == change.key) continue;
+    wanted[i] = change;
+    route.told[static_cast<std::size_t>(128 * (change.channel - 1) + change.key)] = true;
+    if (address_count == addresses.size()) apply_addresses(addresses[first_address].sample);
+    addresses[(first_address + address_count++) % addresses.size()] = change;
+  }
+}
+
+void EnvelopeGenerator::State::apply_addresses(std::int64_t sample) KNOTWAVE_RT {
+  while (address_count != 0 && addresses[first_address].sample <= sample) {
+    const AddressChange change = addresses[first_address];
+    first_address = (first_address + 1) % addresses.size();
+    --address_count;
+    const auto index = static_cast<std::size_t>(change.lane);
+    const GeneratorLane& lane = table.lanes[index];
+    rows[index].is_told = true;
+    ports[static_cast<std::size_t>(lane.port)]->address(lane.port_lane, change.channel, change.key);
+  }
+}
+
+/// Which patch played last: by its keys, or, where it has none, by the program that chooses it.
+void EnvelopeGenerator::State::note_newest(const Event& event) KNOTWAVE_RT {
+  const MidiEvent& midi = event.midi;
+  const bool is_program =
+      event.kind == Event::Kind::midi && midi.status() == MidiStatus::program_change;
+  for (std::size_t i = 0; i < players.size(); ++i) {
+    const TriggerSpec& trigger = patches[i]->spec().trigger;
+    if (trigger.kind != TriggerSpec::Kind::note) {
+      const bool is_heard = trigger.channel == 0 || trigger.channel == midi.channel() + 1;
+      if (is_program && is_heard && midi.bytes[1] == trigger.program) played[i] = ++notes_played;
+      continue;
+    }
+    const int newest = players[i]->newest_voice();
+    const std::uint64_t note = newest < 0 ? 0 : players[i]->voice(newest).note;
+    if (note == newest_note[i]) continue;
+    newest_note[i] = note;
+    played[i] = ++notes_played;
+  }
+}
+
+int EnvelopeGenerator::State::source_route(const GeneratorLane& lane) const KNOTWAVE_RT {
+  int source = lane.routes.front();
+  const auto when = [&](int route) {
+    return played[static_cast<std::size_t>(table.routes[static_cast<std::size_t>(route)].patch)];
+  };
+  for (const int route : lane.routes) {
+    if (when(route) > when(source)) source = route;
+  }
+  return source;
+}
+
+void EnvelopeGenerator::State::fill_rows(std::size_t n) KNOTWAVE_RT {
+  for (std::size_t i = 0; i < rows.size(); ++i) fill_row(i, n);
+}
+
+void EnvelopeGenerator::State::fill_row(std::size_t lane, std::size_t n) KNOTWAVE_RT {
+  const GeneratorLane& way = table.lanes[lane];
+  LaneRow& row = rows[lane];
+  const GeneratorRoute& route = table.routes[static_cast<std::size_t>(source_route(way))];
+  const EnvelopePlayer& player = *players[static_cast<std::size_t>(route.patch)];
+  const int voice = way.voice < 0 ? player.newest_voice() : way.voice;
+  const double offset = step_offset(route.spec.kind);
+  const auto to = row.values.begin() + static_cast<std::ptrdiff_t>(lead);
+  const std::size_t count = n + predict;
+  const double before = lead == 0 ? row.values[0] : *(to - 1);
+  if (is_resting || voice < 0) {
+    std::fill_n(to, count, route.spec.rest + offset);
+  } else {
+    const auto values = player.values(voice, route.output);
+    for (std::size_t i = 0; i < count; ++i) {
+      to[static_cast<std::ptrdiff_t>(i)] = values[std::min(i, values.size() - 1)] + offset;
+    }
+  }
+  const auto end = to + static_cast<std::ptrdiff_t>(count);
+  const bool holds = std::all_of(to, end, [before](double v) { return v == before; });
+  row.still = holds && lead != 0 ? row.still + static_cast<std::int64_t>(n) : 0;
+}
+
+void EnvelopeGenerator::State::send_osc(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT {
+  for (std::size_t i = 0; i < osc.size(); ++i) {
+    const GeneratorRoute& route = table.routes[i];
+    if (route.spec.kind != OutputKind::osc) continue;
+    const EnvelopePlayer& player = *players[static_cast<std::size_t>(route.patch)];
+    const int voice = player.newest_voice();
+    const bool is_playing = !is_resting && voice >= 0;
+    OscState& state = osc[i];
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int64_t sample = now + static_cast<std::int64_t>(k);
+      const double value = is_playing ? player.values(voice, route.output)[k] : route.spec.rest;
+      if (sample < state.next || (state.has_sent && value == state.sent)) continue;
+      state = {value, true, sample + state.period, state.period};
+      sink.osc(route.patch, route.output, {sample, 0}, value);
+    }
+  }
+}
+
+void EnvelopeGenerator::State::post_thru(const MidiEvent& event) KNOTWAVE_RT {
+  if (!config.thru || ports.empty()) return;
+  const bool is_on = event.status() == MidiStatus::note_on && event.bytes[2] != 0;
+  const bool is_off = event.status() == MidiStatus::note_off ||
+                      (event.status() == MidiStatus::note_on && event.bytes[2] == 0);
+  if ((is_on || is_off) && notes_reach_first_port) return;
+  const auto channel = static_cast<std::size_t>(event.channel());
+  if (is_on || is_off) thru_keys[128 * channel + (event.bytes[1] & 127u)] = is_on;
+  constexpr int kSustain = 64;
+  if (event.status() == MidiStatus::control_change && event.bytes[1] == kSustain) {
+    thru_pedals[channel] = event.bytes[2] >= 64;
+  }
+  ports[0]->post(event, priority_of(event), true);
+}
+
+void EnvelopeGenerator::State::post_player_messages(int patch) KNOTWAVE_RT {
+  const auto p = static_cast<std::size_t>(patch);
+  const bool is_thru = patches[p]->spec().notes == NoteOutput::thru;
+  for (const PlayerMessage& message : players[p]->take_messages()) {
+    int port = notes_ports[p];
+    if (message.kind == PlayerMessage::Kind::place_gate) continue;  // of the audio callback
+    if (message.kind == PlayerMessage::Kind::place_note) {
+      port = place_ports[p][static_cast<std::size_t>(message.place_event)];
+    }
+    const bool passes = is_thru && message.kind == PlayerMessage::Kind::thru;
+    ports[static_cast<std::size_t>(port)]->post(message.midi, priority_of(message.midi), passes);
+  }
+}
+
+void EnvelopeGenerator::State::render_ports(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT {
+  const std::int64_t begin = now - static_cast<std::int64_t>(lead);
+  const std::int64_t end = begin + static_cast<std::int64_t>(n);
+  std::int64_t first = std::max<std::int64_t>(begin, 0);
+  while (first < end) {
+    apply_addresses(first);
+    std::int64_t stop = end;
+    if (address_count != 0) stop = std::min(stop, addresses[first_address].sample);
+    render_span(first, stop, sink);
+    first = stop;
+  }
+}
+
+void EnvelopeGenerator::State::render_span(std::int64_t first, std::int64_t end,
+                                           GeneratorSink& sink) KNOTWAVE_RT {
+  const auto n = static_cast<std::size_t>(end - first);
+  const auto offset = static_cast<std::size_t>(first - (now - static_cast<std::int64_t>(lead)));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const GeneratorLane& lane = table.lanes[i];
+    const auto port = static_cast<std::size_t>(lane.port);
+    auto& span = port_lanes[port][static_cast<std::size_t>(lane.port_lane)];
+    span = {};
+    const bool holds = rows[i].still > static_cast<std::int64_t>(2 * kBlock + lead);
+    if (!rows[i].is_told || holds) continue;
+    span = std::span(rows[i].values).subspan(offset, n + ports[port]->ahead_samples());
+  }
+  for (std::size_t port = 0; port < ports.size(); ++port) {
+    NumberedSink numbered(sink, static_cast<int>(port));
+    ports[port]->render(first, n, port_lanes[port], numbered);
+  }
+}
+
+void EnvelopeGenerator::State::take_snapshot() KNOTWAVE_RT {
+  next_snapshot = now + static_cast<std::int64_t>(config.rate_hz / (kSnapshots - 1));
+  for (std::size_t i = 0; i < table.lanes.size(); ++i) {
+    const GeneratorLane& lane = table.lanes[i];
+    snapshots[i][snapshot] = ports[static_cast<std::size_t>(lane.port)]->lane_bytes(lane.port_lane);
+  }
+  snapshot_times[snapshot] = now;
+  snapshot = (snapshot + 1) % kSnapshots;
+}
+
+}  // namespace knotwave::engine

@@ -74,7 +74,6 @@ Result<std::unique_ptr<EnvelopeGenerator>> EnvelopeGenerator::create(
   state->set_up_note_ports();
   state->clock.reset(config.rate_hz);
   state->events.resize(kMostEvents + kMostEndings);
-  state->addresses.resize(State::kMostAddresses);
   return std::unique_ptr<EnvelopeGenerator>(new EnvelopeGenerator(std::move(state)));
 }
 
@@ -126,8 +125,7 @@ Result<void> EnvelopeGenerator::State::set_up_players() {
 
 void EnvelopeGenerator::State::set_up_rows() {
   rows.resize(table.lanes.size());
-  wanted.resize(table.lanes.size());
-  for (AddressChange& change : wanted) change.channel = 0;
+  addresses.resize(table.lanes.size());
   snapshots.resize(table.lanes.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const GeneratorLane& lane = table.lanes[i];
@@ -257,9 +255,8 @@ void EnvelopeGenerator::State::visit_told() KNOTWAVE_RT {
     for (int k = 0; k < route.lanes; ++k) {
       const auto index = static_cast<std::size_t>(route.first_lane + k);
       if (!rows[index].is_told) continue;
-      const AddressChange& here = wanted[index];
       if (port.last_step(table.lanes[index].port_lane) == rest) {
-        route.told[static_cast<std::size_t>(128 * (here.channel - 1) + here.key)] = false;
+        route.told[addresses[index].place()] = false;
       } else {
         is_done = false;
       }
@@ -267,11 +264,8 @@ void EnvelopeGenerator::State::visit_told() KNOTWAVE_RT {
     if (!is_done || route.told.none()) continue;
     std::size_t next = 0;
     while (!route.told[next]) ++next;
-    const auto index = static_cast<std::size_t>(route.first_lane);
-    wanted[index].channel = static_cast<int>(next / 128) + 1;
-    wanted[index].key = static_cast<int>(next % 128);
-    rows[index].is_told = true;
-    port.address(first.port_lane, wanted[index].channel, wanted[index].key);
+    set_address(static_cast<std::size_t>(route.first_lane), LaneAddress::at(next),
+                now - static_cast<std::int64_t>(lead));
   }
 }
 

@@ -75,7 +75,7 @@ void EnvelopeGenerator::State::take_events() KNOTWAVE_RT {
     --event_count;
     take_event(event);
   }
-  note_addresses(now);
+  note_addresses();
 }
 
 void EnvelopeGenerator::State::take_event(const Event& event) KNOTWAVE_RT {
@@ -91,7 +91,7 @@ void EnvelopeGenerator::State::take_event(const Event& event) KNOTWAVE_RT {
     players[i]->handle(event);
     post_player_messages(static_cast<int>(i));
   }
-  note_addresses(now);
+  note_addresses();
   note_newest(event);
 }
 
@@ -121,8 +121,9 @@ void EnvelopeGenerator::State::play_block(std::size_t n, GeneratorSink& sink) KN
   if (now >= next_snapshot) take_snapshot();
 }
 
-/// Voices that were given another channel or key: their lanes follow when the cables come there.
-void EnvelopeGenerator::State::note_addresses(std::int64_t sample) KNOTWAVE_RT {
+/// Voices that were given another channel or key: their lanes follow, with their first value there
+/// in time.
+void EnvelopeGenerator::State::note_addresses() KNOTWAVE_RT {
   if (is_resting) return;
   for (std::size_t i = 0; i < table.lanes.size(); ++i) {
     const GeneratorLane& lane = table.lanes[i];
@@ -133,28 +134,23 @@ void EnvelopeGenerator::State::note_addresses(std::int64_t sample) KNOTWAVE_RT {
     // What no key triggers has its channel from the start.
     const bool is_of_keys = patches[patch]->spec().trigger.kind == TriggerSpec::Kind::note;
     if (!voice.has_begun && is_of_keys) continue;
-    AddressChange change{sample, static_cast<int>(i), voice.channel, voice.key};
-    if (route.spec.channel != 0) change.channel = route.spec.channel;
-    if (route.spec.kind != OutputKind::poly_pressure) change.key = 0;
-    const AddressChange& last = wanted[i];
-    if (last.channel == change.channel && last.key == change.key) continue;
-    wanted[i] = change;
-    route.told[static_cast<std::size_t>(128 * (change.channel - 1) + change.key)] = true;
-    if (address_count == addresses.size()) apply_addresses(addresses[first_address].sample);
-    addresses[(first_address + address_count++) % addresses.size()] = change;
+    LaneAddress address{voice.channel, voice.key};
+    if (route.spec.channel != 0) address.channel = route.spec.channel;
+    if (route.spec.kind != OutputKind::poly_pressure) address.key = 0;
+    if (addresses[i] == address) continue;
+    route.told[address.place()] = true;
+    set_address(i, address, now);
   }
 }
 
-void EnvelopeGenerator::State::apply_addresses(std::int64_t sample) KNOTWAVE_RT {
-  while (address_count != 0 && addresses[first_address].sample <= sample) {
-    const AddressChange change = addresses[first_address];
-    first_address = (first_address + 1) % addresses.size();
-    --address_count;
-    const auto index = static_cast<std::size_t>(change.lane);
-    const GeneratorLane& lane = table.lanes[index];
-    rows[index].is_told = true;
-    ports[static_cast<std::size_t>(lane.port)]->address(lane.port_lane, change.channel, change.key);
-  }
+void EnvelopeGenerator::State::set_address(std::size_t lane, LaneAddress address,
+                                           std::int64_t from) KNOTWAVE_RT {
+  addresses[lane] = address;
+  rows[lane].is_told = true;
+  rows[lane].still = 0;  // the cable has not seen it
+  const GeneratorLane& way = table.lanes[lane];
+  ports[static_cast<std::size_t>(way.port)]->address(way.port_lane, address.channel, address.key,
+                                                     from);
 }
 
 /// Which patch played last: by its keys, or, where it has none, by the program that chooses it.
@@ -264,21 +260,11 @@ void EnvelopeGenerator::State::post_player_messages(int patch) KNOTWAVE_RT {
 
 void EnvelopeGenerator::State::render_ports(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT {
   const std::int64_t begin = now - static_cast<std::int64_t>(lead);
+  const std::int64_t first = std::max<std::int64_t>(begin, 0);
   const std::int64_t end = begin + static_cast<std::int64_t>(n);
-  std::int64_t first = std::max<std::int64_t>(begin, 0);
-  while (first < end) {
-    apply_addresses(first);
-    std::int64_t stop = end;
-    if (address_count != 0) stop = std::min(stop, addresses[first_address].sample);
-    render_span(first, stop, sink);
-    first = stop;
-  }
-}
-
-void EnvelopeGenerator::State::render_span(std::int64_t first, std::int64_t end,
-                                           GeneratorSink& sink) KNOTWAVE_RT {
-  const auto n = static_cast<std::size_t>(end - first);
-  const auto offset = static_cast<std::size_t>(first - (now - static_cast<std::int64_t>(lead)));
+  if (first >= end) return;
+  const auto count = static_cast<std::size_t>(end - first);
+  const auto offset = static_cast<std::size_t>(first - begin);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const GeneratorLane& lane = table.lanes[i];
     const auto port = static_cast<std::size_t>(lane.port);
@@ -286,11 +272,11 @@ void EnvelopeGenerator::State::render_span(std::int64_t first, std::int64_t end,
     span = {};
     const bool holds = rows[i].still > static_cast<std::int64_t>(2 * kBlock + lead);
     if (!rows[i].is_told || holds) continue;
-    span = std::span(rows[i].values).subspan(offset, n + ports[port]->ahead_samples());
+    span = std::span(rows[i].values).subspan(offset, count + ports[port]->ahead_samples());
   }
   for (std::size_t port = 0; port < ports.size(); ++port) {
     NumberedSink numbered(sink, static_cast<int>(port));
-    ports[port]->render(first, n, port_lanes[port], numbered);
+    ports[port]->render(first, count, port_lanes[port], numbered);
   }
 }
 

@@ -19,13 +19,20 @@ namespace knotwave::engine {
 struct LaneRow {
   std::vector<double> values;
   std::int64_t still = 0;  ///< samples since it moved
-  bool is_told = false;    ///< it has an address, as the cable knows it
+  bool is_told = false;    ///< it has an address
 };
 
-/// A voice's lane is about another key or channel from a time on.
-struct AddressChange {
-  std::int64_t sample = 0;
-  int lane = 0, channel = 1, key = 60;
+/// What a lane of a voice is about.
+struct LaneAddress {
+  int channel = 0;  ///< 0: nothing yet
+  int key = 0;
+  std::size_t place() const KNOTWAVE_RT {
+    return static_cast<std::size_t>(128 * (channel - 1) + key);
+  }
+  static LaneAddress at(std::size_t place) KNOTWAVE_RT {
+    return {static_cast<int>(place / 128) + 1, static_cast<int>(place % 128)};
+  }
+  friend bool operator==(const LaneAddress&, const LaneAddress&) = default;
 };
 
 struct OscState {
@@ -36,7 +43,6 @@ struct OscState {
 
 struct EnvelopeGenerator::State {
   static constexpr std::size_t kBlock = EnvelopePlayer::kMostSamples;
-  static constexpr std::size_t kMostAddresses = 4096;
   static constexpr std::size_t kSnapshots = 9;  ///< of bytes, eight a second
 
   // Set up.
@@ -51,7 +57,8 @@ struct EnvelopeGenerator::State {
   std::size_t block_length(std::int64_t until) const KNOTWAVE_RT;
   void play_block(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT;
   // From players to rows.
-  void note_addresses(std::int64_t sample) KNOTWAVE_RT;
+  void note_addresses() KNOTWAVE_RT;
+  void set_address(std::size_t lane, LaneAddress address, std::int64_t from) KNOTWAVE_RT;
   void note_newest(const Event& event) KNOTWAVE_RT;
   int source_route(const GeneratorLane& lane) const KNOTWAVE_RT;
   void fill_rows(std::size_t n) KNOTWAVE_RT;
@@ -61,8 +68,6 @@ struct EnvelopeGenerator::State {
   void post_player_messages(int patch) KNOTWAVE_RT;
   void post_thru(const base::MidiEvent& event) KNOTWAVE_RT;
   void render_ports(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT;
-  void render_span(std::int64_t first, std::int64_t end, GeneratorSink& sink) KNOTWAVE_RT;
-  void apply_addresses(std::int64_t sample) KNOTWAVE_RT;
   void take_snapshot() KNOTWAVE_RT;
   // Rest.
   void go_to_rest() KNOTWAVE_RT;
@@ -77,19 +82,17 @@ struct EnvelopeGenerator::State {
   std::vector<LaneRow> rows;                                    ///< of table.lanes
   std::vector<std::vector<OutputPort::LaneValues>> port_lanes;  ///< [port][lane of the port]
   std::vector<OscState> osc;                                    ///< of table.routes
-  std::vector<AddressChange> wanted;          ///< of table.lanes: what was asked for last
-  std::vector<int> notes_ports;               ///< of each patch
-  std::vector<std::vector<int>> place_ports;  ///< [patch][place event]
-  bool notes_reach_first_port = false;        ///< a patch passes them there: thru leaves them out
-  std::size_t lead = 0;                       ///< of the players before the cables
-  std::size_t predict = 0;                    ///< beyond the players' last sample
+  std::vector<LaneAddress> addresses;                           ///< of table.lanes
+  std::vector<int> notes_ports;                                 ///< of each patch
+  std::vector<std::vector<int>> place_ports;                    ///< [patch][place event]
+  bool notes_reach_first_port = false;  ///< a patch passes them there: thru leaves them out
+  std::size_t lead = 0;                 ///< of the players before the cables
+  std::size_t predict = 0;              ///< beyond the players' last sample
   std::int64_t now = 0;
 
   std::vector<Event> events;  ///< a ring
   std::size_t first_event = 0, event_count = 0;
   std::int64_t lost = 0;
-  std::vector<AddressChange> addresses;  ///< a ring
-  std::size_t first_address = 0, address_count = 0;
 
   MidiClock clock;
   std::vector<std::uint64_t> newest_note;  ///< of each patch

@@ -49,7 +49,7 @@ std::int64_t OutputLane::most_next_bytes() const KNOTWAVE_RT {
   return has_halves() ? 6 : spec_.kind == OutputKind::channel_pressure ? 2 : 3;
 }
 
-void OutputLane::address(int channel, int key) KNOTWAVE_RT {
+void OutputLane::address(int channel, int key, std::int64_t from) KNOTWAVE_RT {
   if (spec_.channel == channel && (spec_.key == key || spec_.kind != OutputKind::poly_pressure)) {
     return;
   }
@@ -58,7 +58,9 @@ void OutputLane::address(int channel, int key) KNOTWAVE_RT {
   extremes_ = {};
   forget_halves();
   sent_ = sent_before_ = -1;
-  has_begun_ = false;
+  has_begun_ = true;
+  arrived_ = not_before_ = sample_ticks(from);
+  left_at_ = kNever;
 }
 
 void OutputLane::forget(Ticks time, Ticks until) KNOTWAVE_RT {
@@ -138,7 +140,13 @@ void OutputLane::begin_block(std::int64_t first, std::span<const double> values,
 }
 
 void OutputLane::find_change(Ticks from, Ticks until) KNOTWAVE_RT {
-  left_at_ = curve_.leaves(band_low(), band_high(), std::max(from, not_before_), until);
+  const Ticks start = std::max(from, not_before_);
+  left_at_ = curve_.leaves(band_low(), band_high(), start, until);
+  if (sent_ < 0 || start > until || left_at_ == start) return;
+  // An extreme that came and went while the lane could not speak.
+  Extremes reached = extremes_;
+  reach(reached, seen_ + 1, start >> kTickBits, kNever);
+  if (reached.low.owed_since != kNever || reached.high.owed_since != kNever) left_at_ = start;
 }
 
 void OutputLane::end_block(std::int64_t n) KNOTWAVE_RT {
@@ -255,27 +263,28 @@ void OutputLane::reach(Extremes& extremes, std::int64_t from_sample, std::int64_
     const double v = curve_.sample(k);
     const int high = step_reached_above(v), low = step_reached_below(v);
     const Ticks time = sample_ticks(k);
-    note_extreme(extremes.high, high, high > extremes.high.step, time, held_until);
-    note_extreme(extremes.low, low, extremes.low.step < 0 || low < extremes.low.step, time,
-                 held_until);
+    note_extreme(extremes.high, high, 1, time, held_until);
+    note_extreme(extremes.low, low, -1, time, held_until);
   }
 }
 
-void OutputLane::note_extreme(Extreme& extreme, int step, bool is_further, Ticks time,
+void OutputLane::note_extreme(Extreme& extreme, int step, int direction, Ticks time,
                               Ticks held_until) const KNOTWAVE_RT {
+  const bool is_further = extreme.step < 0 || direction * (step - extreme.step) > 0;
   if (!is_further && step != extreme.step) return;
   if (is_further) extreme = {step, kNever};
-  if (is_held(step, time, held_until)) {
+  if (is_held(step, direction, time, held_until)) {
     extreme.owed_since = kNever;
   } else if (extreme.owed_since == kNever && sent_ >= 0) {
     extreme.owed_since = time;
   }
 }
 
-/// The receiver hears of `step`: it holds it at `time`, or a message that says it is on its way.
-bool OutputLane::is_held(int step, Ticks time, Ticks until) const KNOTWAVE_RT {
+/// The receiver hears of `step` or went beyond: it is there at `time`, or a message is on its way.
+bool OutputLane::is_held(int step, int direction, Ticks time, Ticks until) const KNOTWAVE_RT {
   if (time >= until) return false;
-  return step == sent_ || (time < arrived_ && step == sent_before_);
+  const auto reaches = [&](int sent) { return sent >= 0 && direction * (sent - step) >= 0; };
+  return reaches(sent_) || (time < arrived_ && reaches(sent_before_));
 }
 
 /// The extreme that nobody will hear of if it is not sent now: the value has left it by the end.

@@ -51,7 +51,7 @@ class OutputLane {
   /// A message of the same lane that follows one, at most.
   std::int64_t most_next_bytes() const KNOTWAVE_RT;
 
-  void address(int channel, int key) KNOTWAVE_RT;
+  void address(int channel, int key, std::int64_t from) KNOTWAVE_RT;
   /// Something went by that changes a half of what the receiver holds, or all of it.
   void forget_halves() KNOTWAVE_RT { high_half_ = low_half_ = -1; }
   void forget(Ticks time, Ticks until) KNOTWAVE_RT;
@@ -83,7 +83,7 @@ class OutputLane {
     Extreme low, high;
   };
 
-  bool is_held(int step, Ticks time, Ticks until) const KNOTWAVE_RT;
+  bool is_held(int step, int direction, Ticks time, Ticks until) const KNOTWAVE_RT;
   bool is_nrpn() const KNOTWAVE_RT { return spec_.kind == OutputKind::nrpn; }
   bool has_halves() const KNOTWAVE_RT;
   double band_low() const KNOTWAVE_RT;
@@ -95,7 +95,7 @@ class OutputLane {
   std::optional<Plan> coarse_plan(Ticks arrival, const Cable& cable) const KNOTWAVE_RT;
   void reach(Extremes& extremes, std::int64_t from_sample, std::int64_t to_sample,
              Ticks held_until) const KNOTWAVE_RT;
-  void note_extreme(Extreme& extreme, int step, bool is_further, Ticks time,
+  void note_extreme(Extreme& extreme, int step, int direction, Ticks time,
                     Ticks held_until) const KNOTWAVE_RT;
   std::optional<int> owed_step(const Extremes& reached, Ticks hold_end) const KNOTWAVE_RT;
 

@@ -339,8 +339,8 @@ Result<int> OutputPort::add_lane(const LaneSpec& spec) {
   return static_cast<int>(state_->lanes.size()) - 1;
 }
 
-void OutputPort::address(int lane, int channel, int key) KNOTWAVE_RT {
-  state_->lanes[static_cast<std::size_t>(lane)].address(channel, key);
+void OutputPort::address(int lane, int channel, int key, std::int64_t from) KNOTWAVE_RT {
+  state_->lanes[static_cast<std::size_t>(lane)].address(channel, key, from);
 }
 
 std::size_t OutputPort::ahead_samples() const KNOTWAVE_RT { return state_->ahead; }

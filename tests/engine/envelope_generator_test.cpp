@@ -120,7 +120,8 @@ const std::string kDin = "[ports.synth]\ndevice = 'Minitaur'\nwire = 'din'\n";
 std::string ramp_to(const std::string& output, double seconds, const std::string& trigger = "",
                     const std::string& ports = kDin) {
   return trigger + ports +
-         "[curves.climb]\ndegree = 1\npoints = [0, 1]\n[envelopes.climb]\ncurve = 'climb'\nseconds = " +
+         "[curves.climb]\ndegree = 1\npoints = [0, 1]\n[envelopes.climb]\ncurve = 'climb'\nseconds "
+         "= " +
          std::to_string(seconds) + "\n[[outputs]]\nfrom = 'climb'\n" + output;
 }
 
@@ -264,9 +265,9 @@ TEST(EnvelopeGenerator, NothingIsAllocatedWhileItPlays) {
 TEST(EnvelopeGenerator, EverythingComesToRestAndEveryNoteEnds) {
   EnvelopeGeneratorConfig config;
   config.thru = true;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+  for (int seed = 1; seed <= support::test_count(20); ++seed) {
     Rig rig(kBusy, config);
-    std::vector<Script> script = storm(seed, 30000);
+    std::vector<Script> script = storm(static_cast<std::uint64_t>(seed), 30000);
     script.push_back({30000, 0x92, 70, 100});
     script.push_back({30001, 0xB2, 64, 127});
     rig.play(script, 30100);
@@ -361,6 +362,27 @@ TEST(EnvelopeGenerator, AMidiClockSetsTheTempoOfAClockDivision) {
     EXPECT_NEAR(ends[i] - ends[i - 1], 60.0 / 90, 0.003);
   }
   EXPECT_NEAR(rig.generator->clock_status().bpm, 90, 0.01);
+}
+
+TEST(EnvelopeGenerator, OnAChannelOfItsOwnTheFirstValueIsThereWithItsNote) {
+  Rig rig({"mode = 'poly'\npolyphony = 3\nnotes = 'mpe'\n" +
+           ramp_to("to = 'pressure'\nrange = [20, 120]\nchannel = 'note'\n", 0.5)});
+  rig.play({{4800, 0x90, 60, 100}, {9600, 0x90, 64, 100}}, 14400);
+  std::map<int, double> first_value_s, note_s;
+  for (const Told& told : rig.kept.messages) {
+    const int channel = told.event.channel();
+    if (told.event.status() == base::MidiStatus::channel_pressure) {
+      first_value_s.try_emplace(channel, told.seconds() + 2 / kDinBytesPerSecond);
+      EXPECT_GE(told.event.bytes[1], 20);
+    }
+    if (told.event.status() == base::MidiStatus::note_on) note_s[channel] = told.seconds();
+  }
+  ASSERT_EQ(note_s.size(), 2u);
+  ASSERT_EQ(first_value_s.size(), 2u) << "nothing is said to channels that have no note";
+  for (const auto& [channel, time] : note_s) {
+    EXPECT_NEAR(first_value_s[channel], time, 3.1 / kDinBytesPerSecond) << channel;
+  }
+  EXPECT_NEAR(first_value_s.begin()->second, 0.1, 1e-6);
 }
 
 TEST(EnvelopeGenerator, OscHasItsRateAtMostAndTheLastValueAlways) {

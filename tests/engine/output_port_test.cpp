@@ -318,10 +318,10 @@ TEST(OutputPort, ALaneOfAnotherChannelSaysItsValueThere) {
   ASSERT_TRUE(port->add_lane(control(74)));
   Wire wire(config);
   play(*port, wire, {stairs({50})}, 0, 640, kRate);
-  port->address(0, 1, 99);
+  port->address(0, 1, 99, 640);
   play(*port, wire, {stairs({50})}, 640, 1280, kRate);
   EXPECT_EQ(wire.sent.size(), 1u) << "a key is nothing to a controller";
-  port->address(0, 5, 60);
+  port->address(0, 5, 60, 1280);
   play(*port, wire, {stairs({50})}, 1280, 1920, kRate);
   const std::vector<Bytes> expected = {{0xB0, 74, 50}, {0xB4, 74, 50}};
   EXPECT_EQ(bytes_of(wire), expected);

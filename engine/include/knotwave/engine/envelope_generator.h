@@ -64,7 +64,8 @@ class EnvelopeGenerator {
 
   /// In order of time; one before now() is heard now. It acts when advance() comes there. MIDI
   /// clock, start, stop and song position set the tempo and the position. False: kMostEvents wait
-  /// (kMostEndings more where it ends notes), it is lost. [audio]
+  /// (kMostEndings more where it ends notes), it is lost. System exclusive is kept by reference
+  /// until it is sent. [audio]
   bool handle(const base::MidiEvent& event) KNOTWAVE_RT;
   bool set_tempo(base::SampleTime time, std::uint32_t microseconds_per_quarter) KNOTWAVE_RT;
   static constexpr std::size_t kMostEvents = 8192;

@@ -88,8 +88,10 @@ class OutputPort {
   /// [control] Its number. bits is 14 for pitch bend and 7 for pressures, whatever the spec says.
   /// Errors: value_out_of_range (also more than kMostLanes).
   Result<int> add_lane(const LaneSpec& spec);
-  /// Which key or channel a lane is about from now on (a voice was given another note). [audio]
-  void address(int lane, int channel, int key) KNOTWAVE_RT;
+  /// Which key or channel a lane is about from a sample on that has not been rendered (a voice was
+  /// given another note). The value of that sample is there by then if the call comes a message
+  /// before. [audio]
+  void address(int lane, int channel, int key, std::int64_t from) KNOTWAVE_RT;
 
   /// How far after a block's end values must be known: what a message takes on the wire and the
   /// next one after it (a USB frame; a sample), and 3 samples, of the lanes so far. [any]
@@ -97,9 +99,9 @@ class OutputPort {
 
   /// A message that must go out, before lanes of lower priority: notes, clock, thru. Times rise.
   /// All but clocks keep their order, so one is as urgent as the most urgent behind it. False:
-  /// kMostWaiting were waiting (kEndings more where it ends notes), it is lost. System exclusive is kept by reference until it is sent.
-  /// Controllers that change what a lane's receiver holds (its other half, CC 6, 38, 96 to 101,
-  /// 121) are minded: the lane says it again. [audio]
+  /// kMostWaiting were waiting (kEndings more where it ends notes), it is lost. System exclusive is
+  /// kept by reference until it is sent. Controllers that change what a lane's receiver holds (its
+  /// other half, CC 6, 38, 96 to 101, 121) are minded: the lane says it again. [audio]
   bool post(const base::MidiEvent& event, OutputPriority priority, bool is_thru) KNOTWAVE_RT;
 
   /// The values of one lane over a block: steps, unrounded; [n + ahead_samples()]. Empty: it holds.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <random>
 
@@ -313,6 +314,37 @@ TEST(EnvelopeGenerator, EverythingComesToRestAndEveryNoteEnds) {
     EXPECT_EQ(bends[15], 8192);
     EXPECT_EQ(rig.generator->port_counters(0).lost, 0);
   }
+}
+
+TEST(EnvelopeGenerator, EveryShippedPatchPlaysAndComesToRest) {
+  const std::string folder = std::string(KNOTWAVE_SOURCE_DIR) + "/examples/envelopes";
+  int patches = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    SCOPED_TRACE(file.path().string());
+    const auto spec = read_envelope_patch(file.path().string());
+    ASSERT_TRUE(spec) << spec.error().to_string();
+    const auto program = EnvelopePatchProgram::create(*spec);
+    ASSERT_TRUE(program) << program.error().to_string();
+    const EnvelopePatchProgram* all[] = {program->get()};
+    auto generator = EnvelopeGenerator::create({}, all);
+    ASSERT_TRUE(generator) << generator.error().to_string();
+    Kept kept;
+    for (int channel = 0; channel < 16; ++channel) {
+      (*generator)->handle(Rig::event_of({100, 0x90 | channel, 40, 100}));
+      (*generator)->handle(Rig::event_of({200, 0x90 | channel, 60, 100}));
+    }
+    (*generator)->advance(24000, kept);
+    const bool has_voltages_only = std::ranges::all_of(
+        spec->outputs, [](const OutputSpec& output) { return output.kind == OutputKind::voltage; });
+    EXPECT_EQ(kept.messages.empty(), has_voltages_only);
+    (*generator)->go_to_rest();
+    for (int i = 0; i < 1000 && !(*generator)->is_at_rest(); ++i) {
+      (*generator)->advance((*generator)->now() + 64, kept);
+    }
+    EXPECT_TRUE((*generator)->is_at_rest());
+    ++patches;
+  }
+  EXPECT_GE(patches, 6);
 }
 
 TEST(EnvelopeGenerator, ThruIsMergedWithNothingChangedAndClocksFirst) {

@@ -82,6 +82,7 @@ void EnvelopePlayer::handle(const Event& event) KNOTWAVE_RT {
         s.lift_keys(channel, time);
         s.follow_gate(channel, time);
       }
+      s.settle_mono(time, 64);
       break;
     case Event::Kind::install_bank:
     case Event::Kind::set_target:
@@ -174,7 +175,8 @@ void EnvelopePlayer::State::handle_control(int channel, int controller, int valu
       configure_mpe(channel, state.mpe_members(), time);
       break;
   }
-  if (trigger.kind == TriggerSpec::Kind::gate) follow_gate(channel, time);
+  settle_mono(time, 64);
+  follow_gate(channel, time);
 }
 
 void EnvelopePlayer::State::configure_mpe(int channel, int count,
@@ -189,10 +191,12 @@ void EnvelopePlayer::State::configure_mpe(int channel, int count,
     lift_keys(other, time);
     follow_gate(other, time);
   }
+  settle_mono(time, 64);
 }
 
 void EnvelopePlayer::State::reset_system(base::SampleTime time) KNOTWAVE_RT {
   for (int channel = 0; channel < 16; ++channel) silence(channel, time);
+  settle_mono(time, 64);
   for (ChannelState& channel : channels) channel.reset();
   zones.reset();
   sustain_was_on.fill(false);

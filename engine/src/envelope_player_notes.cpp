@@ -55,7 +55,7 @@ void EnvelopePlayer::State::note_on(int channel, int key, int velocity,
   const bool is_note = trigger.kind == TriggerSpec::Kind::note;
   if (is_note && (key < trigger.key_low || key > trigger.key_high || !is_selected(channel))) return;
   if (spec.notes == NoteOutput::thru) pass_on(channel, key, velocity, time);
-  if (!is_note || is_halted) return;
+  if (!is_note) return;
   if (is_poly) {
     play_poly(channel, key, velocity, time);
   } else {
@@ -190,7 +190,7 @@ void EnvelopePlayer::State::play_mono(int channel, int key, int velocity,
 }
 
 void EnvelopePlayer::State::settle_mono(base::SampleTime time, int release_velocity) KNOTWAVE_RT {
-  if (is_poly || !voices[0].gate_is_open()) return;
+  if (trigger.kind != TriggerSpec::Kind::note || is_poly || !voices[0].gate_is_open()) return;
   const Chosen chosen = choose();
   if (chosen.entry == nullptr) {
     close(0, time, release_velocity);
@@ -232,7 +232,6 @@ void EnvelopePlayer::State::update_pedals(int channel, base::SampleTime time) KN
     if (caught) stacks[c].catch_sostenuto();
     if (dropped) stacks[c].drop_sostenuto(sustain);
     if (!sustain) stacks[c].drop_sustain();
-    settle_mono(time, 64);
     return;
   }
   for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -250,7 +249,6 @@ void EnvelopePlayer::State::lift_keys(int channel, base::SampleTime time) KNOTWA
   const bool sustain = sustains(channel);
   if (!is_poly) {
     stacks[static_cast<std::size_t>(channel)].lift_all(sustain);
-    settle_mono(time, 64);
     return;
   }
   for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -267,7 +265,6 @@ void EnvelopePlayer::State::silence(int channel, base::SampleTime time) KNOTWAVE
   end_passed(channel, time);
   if (trigger.kind != TriggerSpec::Kind::note) return;
   stacks[static_cast<std::size_t>(channel)].clear();
-  settle_mono(time, 64);
   for (std::size_t i = 0; is_poly && i < slots.size(); ++i) {
     if (slots[i].channel == channel) close(i, time, 64);
   }
@@ -281,7 +278,7 @@ void EnvelopePlayer::State::follow_gate(int channel, base::SampleTime time) KNOT
   const std::uint32_t bit = 1U << channel, before = open_channels;
   if (value < trigger.threshold) {
     open_channels &= ~bit;
-  } else if ((before & bit) == 0 && is_selected(channel) && !is_halted) {
+  } else if ((before & bit) == 0 && is_selected(channel)) {
     open_channels |= bit;
   }
   if (before == 0 && open_channels != 0) {

@@ -61,6 +61,7 @@ struct EnvelopePlayer::State {
   void open(std::size_t voice, const NoteContext& note, base::SampleTime time,
             bool joins) KNOTWAVE_RT;
   void close(std::size_t voice, base::SampleTime time, int release_velocity) KNOTWAVE_RT;
+  /// These move keys and pedals of one channel; settle_mono() comes once behind all of them.
   bool sustains(int channel) const KNOTWAVE_RT;
   bool holds_sostenuto(int channel) const KNOTWAVE_RT;
   void update_pedals(int channel, base::SampleTime time) KNOTWAVE_RT;

@@ -288,6 +288,26 @@ TEST(EnvelopeMode, PedalsHoldWhatKeysLetGo) {
   }
 }
 
+TEST(EnvelopeMode, KeysOfManyChannelsLetGoAtOnceOpenNoGateBetween) {
+  for (const int how : {0, 1, 2}) {
+    EnvelopeRig rig(kKeys);
+    for (int channel = 0; channel < 5; ++channel) {
+      rig.midi(100 + channel, 0x90 + channel, 60 + channel, 100);
+    }
+    Event event;
+    event.midi.time.sample = 200;
+    if (how == 0) event.kind = Event::Kind::all_notes_off;
+    event.midi.bytes[0] = 0xFF;
+    if (how < 2) rig.add(event);
+    rig.play(210);
+    if (how == 2) rig.player().release_all();
+    rig.play(300);
+    EXPECT_EQ(rig.player().voice(0).note, 5u) << how;
+    EXPECT_EQ(rig.player().voice(0).key, 64) << how;
+    EXPECT_NEAR(rig.at(299), 195 / 48000.0, 1e-12) << "it ran on; " << how;
+  }
+}
+
 TEST(EnvelopeMode, PolyPlaysEachNoteInAVoiceAndStealsTheOldest) {
   EnvelopeRig rig("mode = 'poly'\npolyphony = 2\n" + std::string(kKeys));
   rig.midi(100, 0x90, 60, 100);
@@ -405,6 +425,9 @@ TEST(EnvelopeNotes, ReleaseAllLetsGoOfEveryNoteThatWentOut) {
     }
     rig.play(2000);
     EXPECT_TRUE(rig.player().is_still());
+    rig.midi(2000, 0x90, 70, 100);
+    rig.play(2100);
+    EXPECT_TRUE(rig.player().voice(rig.player().newest_voice()).is_active);
   }
 }
 

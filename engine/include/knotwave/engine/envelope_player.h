@@ -82,7 +82,7 @@ class EnvelopePlayer {
   /// Where an envelope of a voice is, for those who show it: 0..1. [audio]
   double place(int voice, int envelope) const KNOTWAVE_RT;
   /// Closes every gate now, lets go the notes that went out, and stays closed to clock and loop.
-  /// [audio]
+  /// Keys and controllers open gates again. [audio]
   void release_all() KNOTWAVE_RT;
 
  private:

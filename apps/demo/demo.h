@@ -34,6 +34,7 @@ class DemoFiles {
   DemoFiles& operator=(DemoFiles&&) = delete;
   ~DemoFiles();
 
+  const std::string& folder() const { return folder_; }
   std::string patch() const { return folder_ + "/" + patch_; }
   std::string score() const { return folder_ + "/" + score_; }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "event_feed.h"
+#include "song/event_feed.h"
 
 namespace knotwave::render {
 namespace {
@@ -38,7 +38,7 @@ std::string find_missing_patches(const RenderInput& input) {
   constexpr std::size_t kAtOnce = 1024;
   std::vector<engine::Event> block;
   for (std::size_t i = 0; i < input.song.events.size(); ++i) {
-    block.push_back(engine_event(input.song, input.song.events[i]));
+    block.push_back(song::engine_event(input.song, input.song.events[i]));
     if (block.size() < kAtOnce && i + 1 < input.song.events.size()) continue;
     (*engine)->process(block, {}, {});
     block.clear();

@@ -6,7 +6,7 @@
 
 #include "knotwave/base/file.h"
 
-#include "event_feed.h"
+#include "song/event_feed.h"
 
 namespace knotwave::render {
 
@@ -27,7 +27,7 @@ std::string output_overlap(const RenderOptions& options, const RenderInput& inpu
   add("--output", options.output);
   add("--json", options.json);
   if (!options.stems.empty()) {
-    const std::uint32_t channels = EventFeed(input.song, options.rate_hz).channels();
+    const std::uint32_t channels = song::EventFeed(input.song, options.rate_hz).channels();
     for (int channel = 0; channel < kMidiChannels; ++channel) {
       if ((channels >> channel & 1) != 0) add("--stems", stem_path(options, channel));
     }

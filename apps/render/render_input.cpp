@@ -5,21 +5,14 @@
 #include "bank_input/bank_input.h"
 #include "command_line/output.h"
 #include "demo/demo.h"
-#include "event_feed.h"
 #include "render_job.h"
+#include "song/event_feed.h"
+#include "song/song_file.h"
 
 namespace knotwave::render {
 namespace {
 
 constexpr const char* kStandardInput = "/dev/stdin";
-
-std::string warning_text(const std::string& file, const std::string& what) {
-  return file + ": warning: " + what;
-}
-
-std::string warning_text(const std::string& file, const io::SongWarning& warning) {
-  return file + ": byte " + std::to_string(warning.offset) + ": warning: " + warning.message;
-}
 
 Result<void> read_bank(const std::string& path, RenderInput& input) {
   auto bank = bank_input::read(path);
@@ -33,21 +26,10 @@ Result<void> read_bank(const std::string& path, RenderInput& input) {
 }
 
 Result<void> read_score(const std::string& path, RenderInput& input) {
-  auto song = io::read_midi_file(path);
-  if (!song) {
-    Error error = std::move(song).error();
-    if (path == kStandardInput) error.source = input.score_name;
-    return error;
-  }
-  input.song = std::move(song).value();
-  const std::string& name = input.score_name;
-  for (const auto& warning : input.song.warnings) {
-    input.warnings.push_back(warning_text(name, warning));
-  }
-  if (input.song.warnings_left_out > 0) {
-    input.warnings.push_back(warning_text(
-        name, std::to_string(input.song.warnings_left_out) + " more warnings are left out"));
-  }
+  auto file = song::read(path, input.score_name);
+  if (!file) return std::move(file).error();
+  input.song = std::move(file->song);
+  for (auto& warning : file->warnings) input.warnings.push_back(std::move(warning));
   return {};
 }
 
@@ -86,7 +68,7 @@ Result<RenderInput> read_input(const RenderOptions& options) {
 }
 
 std::string check_line(const RenderOptions& options, const RenderInput& input) {
-  const EventFeed feed(input.song, options.rate_hz);
+  const song::EventFeed feed(input.song, options.rate_hz);
   const double seconds = static_cast<double>(feed.end().sample) / options.rate_hz;
   std::string line = input.score_name + ": ok: " + std::to_string(input.song.track_count) +
                      (input.song.track_count == 1 ? " track, " : " tracks, ") +

@@ -13,10 +13,10 @@
 
 #include "knotwave/engine/engine.h"
 
-#include "event_feed.h"
 #include "missing_patches.h"
 #include "output_places.h"
 #include "progress.h"
+#include "song/event_feed.h"
 #include "sound_sink.h"
 
 namespace knotwave::render {
@@ -61,7 +61,7 @@ class RenderJob {
 
   const RenderOptions& options_;
   const RenderInput& input_;
-  EventFeed feed_;
+  song::EventFeed feed_;
   std::int64_t song_frames_;
   std::unique_ptr<engine::Engine> engine_;
   std::vector<float> left_, right_;

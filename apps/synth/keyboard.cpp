@@ -111,7 +111,7 @@ std::vector<std::string> keyboard_help() {
           " a s d f g h j k l ; '  held as long as the key repeats, else 0.3 s",
           "",
           " + -    octave up, down         tab    next patch",
-          " space  all notes off           r      record, stop recording",
+          " space  notes and song off      r      record, stop recording",
           " m      learn a MIDI controller ?      this help",
           " q      quit (Ctrl-C as well)"};
 }

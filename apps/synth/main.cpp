@@ -87,24 +87,45 @@ int say(const Error& error) { return say_error(kProgram, error); }
 /// What a service manager or a shell expects of an end that was asked for.
 int exit_code_of_signal() { return last_signal == SIGINT ? kExitInterrupted : kExitOk; }
 
+/// What is to be played: as the command line says, or as a program that was started anew did.
+Result<Performance> performance(const SynthOptions& options, const Resume& resume,
+                                const std::optional<demo::DemoFiles>& demo) {
+  Performance performance;
+  std::string path = demo ? demo->patch() : options.patch;
+  if (demo && !resume.demo_file.empty()) path = demo->folder() + resume.demo_file;
+  if (!resume.patch.empty()) path = resume.patch;
+  auto bank = read_playable(path);
+  if (!bank) return std::move(bank).error();
+  performance.bank = *std::move(bank);
+  if (demo && path == demo->patch()) performance.name = "demo " + options.demo;
+  const std::string file = demo ? demo->score() : options.song;
+  const bool is_song_over = !resume.is_first_start() && resume.song_s < 0;
+  if (file.empty() || is_song_over) return performance;
+  performance.song_name = demo ? options.demo : file;
+  auto song = song::read(file, performance.song_name);
+  if (!song) return std::move(song).error();
+  performance.song = *std::move(song);
+  return performance;
+}
+
 int play(const SynthOptions& options, char** argv) {
   const Resume resume = take_resume();
   std::optional<demo::DemoFiles> demo;
-  std::string path = resume.patch.empty() ? options.patch : resume.patch;
-  if (path.empty()) {
+  if (!options.demo.empty()) {
     auto unpacked = demo::DemoFiles::unpack(options.demo);
     if (!unpacked) return say(unpacked.error());
     demo.emplace(std::move(unpacked).value());
-    path = demo->patch();
   }
-  auto bank = read_playable(path);
-  if (!bank) return say(bank.error());
-  const std::string name = demo ? "demo " + options.demo : "";
-  auto synth = Synth::open(options, *std::move(bank), name, resume);
+  auto asked = performance(options, resume, demo);
+  if (!asked) return say(asked.error());
+  auto synth = Synth::open(options, *std::move(asked), resume);
   if (!synth) return say(synth.error());
   const Synth::End end = (*synth)->run(signals);
   Resume next = (*synth)->resume();
-  if (demo) next.patch.clear();  // its files go with this process
+  if (demo && next.patch.starts_with(demo->folder())) {
+    next.demo_file = next.patch.substr(demo->folder().size());
+    next.patch.clear();  // its files go with this process
+  }
   const bool has_failed = (*synth)->has_failed();
   synth->reset();
   demo.reset();

@@ -7,7 +7,6 @@
 namespace knotwave::synth {
 namespace {
 
-constexpr int kClockInput = 19;       ///< of the engine: tempo from the stream's own port
 constexpr double kClockRate = 48000;  ///< clocks are counted in these, whatever the device's rate
 
 /// Nanoseconds as samples of kClockRate with their fraction: 6 samples are 125 us.
@@ -24,7 +23,7 @@ base::SampleTime clock_time(std::int64_t time_ns) {
 
 MidiEntry::MidiEntry(EngineGate& gate) : gate_(gate) {
   lock_.clear();
-  exact_.reserve(2 * kMostExact + kMostHeld);
+  exact_.reserve(2 * kMostExact + PortNotes::kMostHeld);
   for (engine::MidiClock& clock : clocks_) clock.reset(kClockRate);
 }
 
@@ -39,25 +38,18 @@ engine::MidiLearn::Out MidiEntry::learned(const base::MidiEvent& event) noexcept
   return out;
 }
 
-/// Clocks are no music: a tempo that changed is handed on in their place.
-bool MidiEntry::is_clock(const base::MidiEvent& event, std::int64_t time_ns,
-                         std::size_t port) noexcept {
+MidiEntry::Clock MidiEntry::follow_clock(const base::MidiEvent& event, std::int64_t time_ns,
+                                         std::size_t port) noexcept {
   const std::uint8_t status = event.bytes[0];
   const bool is_transport = status >= 0xFA && status <= 0xFC;
-  if (status != 0xF8 && status != 0xF2 && !is_transport) return false;
+  if (status != 0xF8 && status != 0xF2 && !is_transport) return Clock::none;
   base::MidiEvent timed = event;
   timed.time = clock_time(time_ns);
-  if (clocks_[port].handle(timed)) {
-    engine::LiveMessage tempo;
-    tempo.kind = engine::LiveMessage::Kind::tempo;
-    tempo.time_ns = time_ns;
-    tempo.number = clocks_[port].tempo_event().microseconds_per_quarter;
-    gate_.push(port == kStreamPort ? kClockInput : static_cast<int>(port), tempo);
-  }
+  const bool is_new = clocks_[port].handle(timed);
   const engine::MidiClockStatus now = clocks_[port].status();
   bpm_.store(static_cast<float>(now.bpm), std::memory_order_relaxed);
   jitter_ms_.store(static_cast<float>(now.jitter_ms), std::memory_order_relaxed);
-  return true;
+  return is_new ? Clock::new_tempo : Clock::followed;
 }
 
 PortNotes& MidiEntry::notes_of(std::size_t port) noexcept {
@@ -72,12 +64,22 @@ PortNotes& MidiEntry::notes_of(std::size_t port) noexcept {
 void MidiEntry::heard(const base::MidiEvent& event, std::int64_t time_ns) noexcept {
   const std::size_t port = event.port % kStreamPort;
   if ((left_out_.load(std::memory_order_relaxed) >> port & 1) != 0) return;
-  if (is_clock(event, time_ns, port)) return;
+  const auto push = [&](const engine::LiveMessage& message) {
+    gate_.push(static_cast<int>(port), message);
+  };
+  // Clocks are no music: a tempo that changed is handed on in their place.
+  if (const Clock clock = follow_clock(event, time_ns, port); clock != Clock::none) {
+    if (clock == Clock::followed) return;
+    engine::LiveMessage tempo;
+    tempo.kind = engine::LiveMessage::Kind::tempo;
+    tempo.time_ns = time_ns;
+    tempo.number = clocks_[port].tempo_event().microseconds_per_quarter;
+    return push(tempo);
+  }
   notes_of(port).heard(event);
   const auto out = learned(event);
   for (int i = 0; i < out.count; ++i) {
-    gate_.push(static_cast<int>(port),
-               engine::live_message(out.messages[static_cast<std::size_t>(i)], time_ns));
+    push(engine::live_message(out.messages[static_cast<std::size_t>(i)], time_ns));
   }
 }
 
@@ -96,24 +98,31 @@ void MidiEntry::follow_stream_sender() noexcept {
   if (!has_sender_left_.exchange(false, std::memory_order_relaxed)) return;
   notes_of(kStreamPort)
       .release([this](std::uint8_t status, std::uint8_t first, std::uint8_t second) {
-        exact_.push_back({{0, 0}, {status, first, second}});
+        exact_.push_back({.midi = {{0, 0}, {status, first, second}}});
       });
 }
 
-std::span<const base::MidiEvent> MidiEntry::translated(std::span<const base::MidiEvent> exact,
-                                                       std::int64_t time_ns,
-                                                       double rate_hz) KNOTWAVE_RT {
+std::span<const engine::Event> MidiEntry::translated(std::span<const base::MidiEvent> exact,
+                                                     std::int64_t time_ns,
+                                                     double rate_hz) KNOTWAVE_RT {
   exact_.clear();
   follow_stream_sender();
+  const auto add = [this](engine::Event event, base::SampleTime time) {
+    event.midi.time = time;
+    exact_.push_back(event);
+  };
   for (const base::MidiEvent& event : exact.first(std::min(exact.size(), kMostExact))) {
     const auto offset_ns =
         static_cast<std::int64_t>(static_cast<double>(event.time.sample) * 1e9 / rate_hz);
-    if (is_clock(event, time_ns + offset_ns, kStreamPort)) continue;
+    if (const Clock clock = follow_clock(event, time_ns + offset_ns, kStreamPort);
+        clock != Clock::none) {
+      if (clock == Clock::new_tempo) add(clocks_[kStreamPort].tempo_event(), event.time);
+      continue;
+    }
     notes_of(kStreamPort).heard(event);
     const auto out = learned(event);
     for (int i = 0; i < out.count; ++i) {
-      exact_.push_back(out.messages[static_cast<std::size_t>(i)]);
-      exact_.back().time = event.time;
+      add({.midi = out.messages[static_cast<std::size_t>(i)]}, event.time);
     }
   }
   return exact_;

@@ -21,16 +21,17 @@ namespace knotwave::synth {
 
 class MidiEntry {
  public:
+  static constexpr std::size_t kMostExact = 4096;  ///< messages of one translated(); more are lost
   /// `gate` must outlive it.
   explicit MidiEntry(EngineGate& gate);
 
   /// A message of a cable, or its loss. [any], one thread at a time for each port.
   void heard(const base::MidiEvent& event, std::int64_t time_ns) noexcept;
   void lost(int port) noexcept;
-  /// Of the stream's own port: what goes to the engine instead; times are offsets in a block that
-  /// was asked for at `time_ns`. Valid until the next call. [audio]
-  std::span<const base::MidiEvent> translated(std::span<const base::MidiEvent> exact,
-                                              std::int64_t time_ns, double rate_hz) KNOTWAVE_RT;
+  /// Of the stream's own port: what goes to the engine, the tempo of its clock included; times are
+  /// offsets in a block that was asked for at `time_ns`. Valid until the next call. [audio]
+  std::span<const engine::Event> translated(std::span<const base::MidiEvent> exact,
+                                            std::int64_t time_ns, double rate_hz) KNOTWAVE_RT;
   /// Who was connected to the stream's own port went: what it holds ends with the next block. [any]
   void stream_sender_left() noexcept { has_sender_left_ = true; }
   /// Bit p: port p is not listened to, as the stream's own port hears the same. [any]
@@ -75,15 +76,13 @@ class MidiEntry {
   static constexpr int kTries = 1000;                            ///< of threads that play
   static constexpr int kEndless = 1 << 30;                       ///< of the control thread
   static constexpr std::size_t kStreamPort = io::kMaxMidiPorts;  ///< the stream's own
-  static constexpr std::size_t kMostExact = 4096;
-
-  /// The most that PortNotes lets go: three pedals and 128 keys of 16 channels.
-  static constexpr std::size_t kMostHeld = std::size_t{16} * (3 + 128);
 
   PortNotes& notes_of(std::size_t port) noexcept;
   void follow_stream_sender() noexcept;
   engine::MidiLearn::Out learned(const base::MidiEvent& event) noexcept;
-  bool is_clock(const base::MidiEvent& event, std::int64_t time_ns, std::size_t port) noexcept;
+  /// What a message means to a port's clock: nothing, no new tempo, or a new tempo_event().
+  enum class Clock { none, followed, new_tempo };
+  Clock follow_clock(const base::MidiEvent& event, std::int64_t time_ns, std::size_t port) noexcept;
 
   EngineGate& gate_;
   std::array<PortNotes, kStreamPort + 1> notes_;  ///< each of the thread that hears its port
@@ -94,7 +93,7 @@ class MidiEntry {
   std::atomic_flag lock_;  ///< of learn_
   std::optional<engine::MidiLearn> learn_;
   std::atomic<bool> has_learn_{false};
-  std::vector<base::MidiEvent> exact_;
+  std::vector<engine::Event> exact_;
   std::atomic<bool> has_sender_left_{false};
 };
 

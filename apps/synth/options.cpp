@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kAbout =
     "Plays a Knotwave patch or bank live, from MIDI, OSC and the computer's keyboard.\n"
     "A saved change of the patch is heard at once. Without PATCH it plays the demo\n"
-    "first-light.";
+    "first-light, whose patch is then yours to play.";
 
 constexpr const char* kMore =
     "Examples:\n"
@@ -27,6 +27,7 @@ constexpr const char* kMore =
     "  knotwave-synth general-midi.toml --audio-api alsa --audio-device HDMI\n"
     "  knotwave-synth bell.toml --midi-in Keystep --midi-in nanoKONTROL --osc 9000\n"
     "  knotwave-synth bell.toml --record take.wav\n"
+    "  knotwave-synth general-midi.toml --song prelude.mid\n"
     "\n"
     "On a terminal a page shows what happens, and ? lists the keys. docs/live.md\n"
     "tells the rest.\n"
@@ -105,7 +106,11 @@ void add_devices(CLI::App& app, SynthOptions& o) {
 void add_playing(CLI::App& app, SynthOptions& o) {
   using namespace command_line;
   add_text(app, {"PATCH", "patch or bank to play (.toml)", ""}, o.patch);
-  add_text(app, {"--demo", "play the patch of a built-in demo: " + demo_names(), "NAME"}, o.demo);
+  add_text(app, {"--demo", "play a built-in demo, its song and its patch: " + demo_names(), "NAME"},
+           o.demo);
+  add_text(app,
+           {"--song", "play this MIDI file (.mid) with the patch, once, from the start", "FILE"},
+           o.song);
   add_number(app, {"--volume", "of everything, in dB", "DB"}, o.volume_db, -96.0, 24.0);
   add_number(app, {"--threads", "threads to render with; changes no sample", ""}, o.threads, 1, 64);
   add_number(app, {"--seed", "seed of everything random", ""}, o.seed);
@@ -147,8 +152,15 @@ std::string conflict(const SynthOptions& o) {
   if (!o.demo.empty() && !demo::is_demo(o.demo)) return demo::unknown_demo(o.demo).message;
   for (const char* ending : {".mid", ".midi", ".rmi"}) {
     if (base::has_ending(o.patch, ending)) {
-      return "'" + o.patch + "' is named as a MIDI file; knotwave-render plays those, into a file";
+      return "'" + o.patch + "' is named as a MIDI file; play it with a patch or a bank: PATCH " +
+             "--song '" + o.patch + "'";
     }
+  }
+  if (!o.song.empty() && !o.demo.empty()) {
+    return "--demo plays its own song; leave out --song '" + o.song + "'";
+  }
+  if (!o.song.empty() && o.patch.empty()) {
+    return "--song needs a patch or a bank to play '" + o.song + "' with: PATCH --song FILE";
   }
   if (o.plain && o.json_status) return "--plain and --json-status are two kinds of output; choose";
   const bool is_sound = base::has_ending(o.record, ".wav") || base::has_ending(o.record, ".flac");

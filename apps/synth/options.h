@@ -14,6 +14,7 @@ namespace knotwave::synth {
 struct SynthOptions {
   std::string patch;  ///< a patch or a bank; empty with a demo
   std::string demo;
+  std::string song;  ///< a MIDI file; empty: none, but a demo has its own
   bool list_devices = false;
   std::string audio_api, audio_device;
   std::vector<int> channels = {1, 2};

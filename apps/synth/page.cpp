@@ -156,6 +156,10 @@ std::vector<PageLine> top(const SynthStatus& status, int columns) {
     for (const std::string& knob : status.knobs_to_turn) text += (text.empty() ? "" : ", ") + knob;
     lines.push_back(labelled("knobs", text, Style::warning));
   }
+  if (!status.song.empty()) {
+    lines.push_back(labelled("song", clock_text(status.song_s) + " of " +
+                                         clock_text(status.song_length_s) + "  " + status.song));
+  }
   if (!status.recording.empty()) {
     lines.push_back(
         labelled("REC", clock_text(status.recorded_s) + "  " + status.recording, Style::alarm));

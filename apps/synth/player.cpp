@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <system_error>
 #include <thread>
@@ -35,8 +36,13 @@ Result<std::unique_ptr<Player>> Player::open(const PlayerConfig& config, Playabl
   player->config_ = config;
   player->bank_ = std::move(bank);
   player->mono_.resize(io::kMaxAudioBlock);
+  if (config.song) {
+    player->song_ = std::make_unique<SongPlayer>(*config.song);
+    player->exact_.reserve(SongPlayer::kMostEvents +
+                           2 * (MidiEntry::kMostExact + PortNotes::kMostHeld));
+  }
   if (auto good = player->open_stream(config); !good) return good.error();
-  if (auto good = player->make_engine(); !good) return good.error();
+  if (auto good = player->make_engine(config.song_position_s); !good) return good.error();
   io::MidiInputConfig midi_config = config.midi;
   midi_config.client_name = config.audio.client_name + "-midi";  // JACK gives each name once
   auto midi = io::MidiInputs::open(midi_config, *player);
@@ -48,9 +54,10 @@ Result<std::unique_ptr<Player>> Player::open(const PlayerConfig& config, Playabl
   } else {
     player->first_lines_.push_back("no MIDI: " + midi.error().message);
   }
-  if (auto good = player->stream_->start(); !good) return good.error();
   return player;
 }
+
+Result<void> Player::start() { return stream_->start(); }
 
 /// What hangs is waited for once, not one after the other.
 Player::~Player() {
@@ -100,8 +107,8 @@ Result<void> Player::open_substitute() {
   return {};
 }
 
-/// Of the stream's rate, playing the bank.
-Result<void> Player::make_engine() {
+/// Of the stream's rate, playing the bank, and the song from a position on.
+Result<void> Player::make_engine(double song_position_s) {
   auto program = std::move(bank_.input.program);
   if (!program) {
     auto again = engine::BankProgram::create(bank_.input.spec, bank_.input.waves);
@@ -117,6 +124,7 @@ Result<void> Player::make_engine() {
   live_ = *std::move(live);
   begin_journal();
   is_journal_whole_ = true;
+  if (song_) song_->begin(rate_hz_, song_position_s);
   gate_.lead_to(live_.get());
   return {};
 }
@@ -128,15 +136,29 @@ void Player::begin_journal() {
 
 void Player::process(const io::AudioBlock& block) KNOTWAVE_RT {
   const auto frames = static_cast<std::size_t>(block.frames);
-  const auto midi = entry_.translated(block.midi, block.time_ns, rate_hz_);
+  const auto exact = exact_events(block);
   const std::span<float> left(block.outputs[0], frames);
   if (block.outputs.size() > 1) {
-    live_->process(block.time_ns, midi, left, {block.outputs[1], frames});
+    live_->process(block.time_ns, exact, left, {block.outputs[1], frames});
     return;
   }
   const std::span<float> right = std::span(mono_).first(frames);
-  live_->process(block.time_ns, midi, left, right);
+  live_->process(block.time_ns, exact, left, right);
   for (std::size_t i = 0; i < frames; ++i) left[i] = 0.5f * (left[i] + right[i]);
+}
+
+/// What the song plays in a block, and what the stream's own port heard.
+std::span<const engine::Event> Player::exact_events(const io::AudioBlock& block) KNOTWAVE_RT {
+  const auto heard = entry_.translated(block.midi, block.time_ns, rate_hz_);
+  if (!song_) return heard;
+  const auto played = song_->due(block.frames);
+  const auto comes_first = [](const engine::Event& a, const engine::Event& b) {
+    return a.time() < b.time();
+  };
+  exact_.clear();
+  std::merge(played.begin(), played.end(), heard.begin(), heard.end(), std::back_inserter(exact_),
+             comes_first);
+  return exact_;
 }
 
 void Player::message(const base::MidiEvent& event, std::int64_t time_ns) noexcept {
@@ -232,6 +254,7 @@ void Player::install(PlayableBank bank) {
 }
 
 void Player::panic() {
+  if (song_) song_->stop();
   live_->panic();
   entry_.forget();
 }
@@ -290,7 +313,7 @@ void Player::end_engine(std::vector<std::string>& told) {
   stream_ = std::move(ending_);
   journal();
   const auto held = held_.messages();
-  if (auto good = make_engine(); !good) {
+  if (auto good = make_engine(song_ ? song_->position_s() : 0); !good) {
     told.push_back(good.error().message);
     return;
   }
@@ -319,6 +342,10 @@ void Player::describe(SynthStatus& status) {
   status.lost_reason = is_lost_ ? lost_reason_ : "";
   status.live = live_->status();
   if (midi_) status.midi = midi_->ports();
+  if (song_ && !song_->is_over()) {
+    status.song_s = song_->position_s();
+    status.song_length_s = song_->length_s();
+  }
   status.clock_bpm = entry_.clock_bpm();
   status.clock_jitter_ms = entry_.clock_jitter_ms();
   status.knobs_to_turn = entry_.to_turn();

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "engine_gate.h"
 #include "held_state.h"
 #include "midi_entry.h"
+#include "song_player.h"
 #include "status.h"
 #include "stream_opener.h"
 
@@ -24,6 +26,8 @@ struct PlayerConfig {
   io::MidiInputConfig midi;
   engine::EngineConfig engine;        ///< the rate comes from the device
   bool plays_without_device = false;  ///< where none is chosen and none is there
+  std::optional<io::Song> song;       ///< is played from the first sample on
+  double song_position_s = 0;         ///< where it begins
   /// Not empty: a device of this API was lost, and is looked for where it is not there.
   std::string lost_api;
   double lost_rate_hz = 0;
@@ -32,9 +36,11 @@ struct PlayerConfig {
 /// [control] unless said otherwise; one thread.
 class Player final : private io::AudioClient, private io::MidiListener {
  public:
-  /// Sounds when it returns. Errors: of the device, the MIDI inputs and the engine.
+  /// Errors: of the device, the MIDI inputs and the engine.
   static Result<std::unique_ptr<Player>> open(const PlayerConfig& config, PlayableBank bank);
   ~Player() override;
+  /// Sounds when it returns; before that nothing moves. Errors: those of the device.
+  Result<void> start();
 
   /// Looks after everything: some 20 times a second. Lines worth telling are added to `told`.
   void tick(std::int64_t now_ns, std::vector<std::string>& told);
@@ -43,6 +49,7 @@ class Player final : private io::AudioClient, private io::MidiListener {
   void install(PlayableBank bank);
   const engine::BankSpec& bank() const { return bank_.input.spec; }
   void panic();
+  const SongPlayer* song() const { return song_.get(); }
   EngineGate& gate() { return gate_; }
   MidiEntry& entry() { return entry_; }
   engine::LiveEngine& live() { return *live_; }
@@ -78,7 +85,8 @@ class Player final : private io::AudioClient, private io::MidiListener {
   void port_lost(int port) noexcept override;
 
   Result<void> open_stream(const PlayerConfig& config);
-  Result<void> make_engine();
+  Result<void> make_engine(double song_position_s);
+  std::span<const engine::Event> exact_events(const io::AudioBlock& block) KNOTWAVE_RT;
   void begin_journal();
   Result<void> open_substitute();
   void lose(const std::string& reason, std::vector<std::string>& told);
@@ -96,6 +104,8 @@ class Player final : private io::AudioClient, private io::MidiListener {
   EngineGate gate_;
   MidiEntry entry_{gate_};
   std::unique_ptr<engine::LiveEngine> live_;
+  std::unique_ptr<SongPlayer> song_;
+  std::vector<engine::Event> exact_;  ///< of a block: song and stream
   engine::Journal journal_;
   bool is_journal_whole_ = true;
   std::size_t records_held_ = 0;                    ///< of the journal, which held_ knows

@@ -2,6 +2,7 @@
 // What a MIDI input holds down, so that it can be let go when the cable is pulled.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "knotwave/base/midi_event.h"
@@ -10,6 +11,9 @@ namespace knotwave::synth {
 
 class PortNotes {
  public:
+  /// The most that is let go: three pedals and 128 keys of 16 channels.
+  static constexpr std::size_t kMostHeld = std::size_t{16} * (3 + 128);
+
   /// A message of the port. [any], one thread at a time; nothing here waits or allocates.
   void heard(const base::MidiEvent& event) noexcept;
   /// Calls send(bytes) with what ends all that is held: pedals up, note-offs. Nothing is held

@@ -18,10 +18,16 @@ constexpr auto kPause = std::chrono::milliseconds(5);
 /// A WAV ends at 4 GiB: 8 bytes a frame, and room for the header.
 constexpr std::int64_t kMostFrames = ((std::int64_t{1} << 32) - 65536) / 8;
 
+std::int64_t frames_of(double most_s, double rate_hz) {
+  const double frames = std::floor(most_s * rate_hz + 0.5);
+  const bool is_limit = frames >= 1 && frames < static_cast<double>(kMostFrames);
+  return is_limit ? static_cast<std::int64_t>(frames) : kMostFrames;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Recorder>> Recorder::start(engine::LiveEngine& live, const std::string& path,
-                                                  double rate_hz) {
+                                                  double rate_hz, double most_s) {
   const bool is_flac = base::has_ending(path, ".flac");
   auto writer = io::SoundWriter::create(
       {.path = path,
@@ -29,14 +35,17 @@ Result<std::unique_ptr<Recorder>> Recorder::start(engine::LiveEngine& live, cons
        .channels = 2,
        .format = is_flac ? io::SampleFormat::pcm24 : io::SampleFormat::float32});
   if (!writer) return writer.error();
-  return std::unique_ptr<Recorder>(new Recorder(live, path, rate_hz, std::move(writer).value()));
+  return std::unique_ptr<Recorder>(
+      new Recorder(live, path, rate_hz, most_s, std::move(writer).value()));
 }
 
-Recorder::Recorder(engine::LiveEngine& live, std::string path, double rate_hz,
+Recorder::Recorder(engine::LiveEngine& live, std::string path, double rate_hz, double most_s,
                    io::SoundWriter writer)
     : live_(live),
       path_(std::move(path)),
       rate_hz_(rate_hz),
+      most_frames_(frames_of(most_s, rate_hz)),
+      has_length_(most_s > 0),
       writer_(std::move(writer)),
       buffer_(2 * kBufferFrames) {
   while (live_.take_tap(buffer_).frames > 0) {  // what a take before left there
@@ -84,11 +93,9 @@ bool Recorder::fill_gap(std::int64_t until) {
 }
 
 bool Recorder::write(std::span<const float> interleaved) {
-  const auto frames = static_cast<std::int64_t>(interleaved.size() / 2);
-  if (frames_ + frames > kMostFrames) {
-    is_over_ = true;
-    return false;
-  }
+  const std::int64_t frames =
+      std::min(static_cast<std::int64_t>(interleaved.size() / 2), most_frames_ - frames_);
+  interleaved = interleaved.first(static_cast<std::size_t>(2 * frames));
   good_ = writer_.write(interleaved);
   if (!good_) {
     is_over_ = true;
@@ -96,6 +103,7 @@ bool Recorder::write(std::span<const float> interleaved) {
   }
   hash_.update(interleaved);
   frames_ += frames;
+  is_over_ = frames_ == most_frames_;
   return true;
 }
 

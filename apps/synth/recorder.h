@@ -19,10 +19,10 @@ namespace knotwave::synth {
 class Recorder {
  public:
   /// Writes what `live` plays from the next block on into `path` (.wav: 32-bit float; .flac: 24
-  /// bits). `live` must outlive it, and nobody else may take its tap. Errors: those of
-  /// SoundWriter::create().
+  /// bits), `most_s` seconds at most; 0: as long as the file can be. `live` must outlive it, and
+  /// nobody else may take its tap. Errors: those of SoundWriter::create().
   static Result<std::unique_ptr<Recorder>> start(engine::LiveEngine& live, const std::string& path,
-                                                 double rate_hz);
+                                                 double rate_hz, double most_s);
   ~Recorder();  ///< drops the take, unless finish() was called
 
   struct Take {
@@ -33,13 +33,15 @@ class Recorder {
   /// Writes what is left and completes the file. Errors: those of SoundWriter.
   Result<Take> finish();
 
-  /// The writer failed (a full disk), or the file can grow no more: call finish(). [any]
+  /// The writer failed (a full disk), or the file is as long as it may be: call finish(). [any]
   bool is_over() const { return is_over_; }
+  bool has_length() const { return has_length_; }  ///< it ends by itself after `most_s`
   double seconds() const { return static_cast<double>(frames_.load()) / rate_hz_; }
   const std::string& path() const { return path_; }
 
  private:
-  Recorder(engine::LiveEngine& live, std::string path, double rate_hz, io::SoundWriter writer);
+  Recorder(engine::LiveEngine& live, std::string path, double rate_hz, double most_s,
+           io::SoundWriter writer);
   void run();
   bool write_some();
   bool write(std::span<const float> interleaved);
@@ -48,6 +50,8 @@ class Recorder {
   engine::LiveEngine& live_;
   std::string path_;
   double rate_hz_;
+  std::int64_t most_frames_;
+  bool has_length_;
   io::SoundWriter writer_;
   base::Sha256 hash_;
   std::vector<float> buffer_;

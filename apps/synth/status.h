@@ -26,7 +26,9 @@ struct SynthStatus {
   std::vector<std::string> knobs_to_turn;     ///< that were learnt, and are not picked up
   std::string osc;                            ///< where it listens; empty: it does not
   std::int64_t osc_messages = 0, osc_faults = 0;
-  std::string recording;  ///< the file; empty: nothing is recorded
+  std::string song;                      ///< that plays by itself; empty: none, or it is over
+  double song_s = 0, song_length_s = 0;  ///< how far it is, of how much
+  std::string recording;                 ///< the file; empty: nothing is recorded
   double recorded_s = 0;
   bool has_keys = false;
   int octave = 4;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kTickNs = 50 * kMs;
+constexpr double kTakeWaitSeconds = 1;
 
 PlayerConfig player_config(const SynthOptions& o) {
   PlayerConfig config;
@@ -49,14 +50,18 @@ Synth::Synth(const SynthOptions& options)
       screen_(std::make_unique<Screen>(!options.plain && !options.json_status)),
       start_ns_(io::steady_clock_ns()) {}
 
-Result<std::unique_ptr<Synth>> Synth::open(const SynthOptions& options, PlayableBank bank,
-                                           const std::string& name, const Resume& resume) {
-  auto watch = std::make_unique<PatchWatch>(bank);
-  const std::vector<std::string> warnings = bank.input.warnings;
+Result<std::unique_ptr<Synth>> Synth::open(const SynthOptions& options, Performance performance,
+                                           const Resume& resume) {
+  auto watch = std::make_unique<PatchWatch>(performance.bank);
+  const std::vector<std::string> warnings = performance.bank.input.warnings;
   PlayerConfig config = player_config(options);
   config.lost_api = resume.api;
   config.lost_rate_hz = resume.rate_hz;
-  auto player = Player::open(config, std::move(bank));
+  if (performance.song) {
+    config.song = std::move(performance.song->song);
+    config.song_position_s = std::max(0.0, resume.song_s);
+  }
+  auto player = Player::open(config, std::move(performance.bank));
   if (!player) return player.error();
   std::unique_ptr<OscDoor> osc;
   if (options.osc) {
@@ -68,17 +73,20 @@ Result<std::unique_ptr<Synth>> Synth::open(const SynthOptions& options, Playable
   synth->player_ = *std::move(player);
   synth->watch_ = std::move(watch);
   synth->osc_ = std::move(osc);
-  synth->name_ = name;
+  synth->name_ = performance.name;
+  synth->song_name_ = performance.song_name;
   synth->first_path_ = synth->watch_->path();
   synth->takes_ = resume.takes;
   if (auto good = synth->open_learn(); !good) return good.error();
-  synth->follow_targets(0);
+  synth->choose_entry(static_cast<std::size_t>(resume.program_entry));
   synth->tell_all(warnings);
+  if (performance.song) synth->tell_all(performance.song->warnings);
   synth->player_->play(resume.held);
   if (!options.record.empty()) {
     synth->begin_take();
     if (synth->has_failed_) return fail(ErrorCode::io_failed, synth->messages_.back());
   }
+  if (auto good = synth->player_->start(); !good) return good.error();
   return synth;
 }
 
@@ -88,8 +96,16 @@ Synth::~Synth() {
 }
 
 Resume Synth::resume() const {
-  return {name_.empty() ? watch_->path() : "", takes_, player_->format().api, player_->rate_hz(),
-          player_->held()};
+  Resume resume;
+  resume.patch = watch_->path();
+  resume.program_entry = static_cast<int>(program_entry_);
+  const SongPlayer* song = player_->song();
+  if (song != nullptr && !song->is_over()) resume.song_s = song->position_s();
+  resume.takes = takes_;
+  resume.api = player_->format().api;
+  resume.rate_hz = player_->rate_hz();
+  resume.held = player_->held();
+  return resume;
 }
 
 Synth::End Synth::run(const std::atomic<int>& signals) {
@@ -98,8 +114,7 @@ Synth::End Synth::run(const std::atomic<int>& signals) {
     const std::int64_t now_ns = io::steady_clock_ns();
     read_keys(now_ns);
     if (now_ns >= next_tick_ns_) tick(now_ns);
-    is_over = options_.duration_s > 0 &&
-              static_cast<double>(now_ns - start_ns_) >= 1e9 * options_.duration_s;
+    is_over = is_time_over(now_ns);
     if (signals > 0 || is_quitting_ || is_over || player_->wants_restart()) break;
     wait(now_ns);
   }
@@ -108,6 +123,13 @@ Synth::End Synth::run(const std::atomic<int>& signals) {
   end_take();
   if (is_restart) return End::restart;
   return signals > 0 ? End::signal : End::asked;
+}
+
+/// A take that is to be as long is waited for: its device has a clock of its own.
+bool Synth::is_time_over(std::int64_t now_ns) const {
+  if (options_.duration_s <= 0) return false;
+  const double over_s = static_cast<double>(now_ns - start_ns_) * 1e-9 - options_.duration_s;
+  return over_s >= (recorder_ && recorder_->has_length() ? kTakeWaitSeconds : 0);
 }
 
 /// Until the next tick, or until a key is typed or a note of the keyboard ends.
@@ -134,16 +156,18 @@ void Synth::tick(std::int64_t now_ns) {
   follow_patch();
   follow_network();
   follow_take();
+  follow_song();
   follow_learn();
   show(now_ns);
 }
 
 void Synth::follow_patch() {
+  const std::string before = watch_->path();
   PatchWatch::News news = watch_->poll(io::steady_clock_ns());
   if (news.bank) {
     player_->install(*std::move(news.bank));
     if (watch_->path() != first_path_) name_.clear();
-    follow_targets(0);
+    choose_entry(watch_->path() == before ? program_entry_ : 0);
   }
   tell_all(news.lines);
 }
@@ -158,6 +182,13 @@ void Synth::follow_network() {
 
 void Synth::follow_take() {
   if (recorder_ && recorder_->is_over()) end_take();
+}
+
+void Synth::follow_song() {
+  const SongPlayer* song = player_->song();
+  if (song == nullptr || is_song_told_ || !song->is_over()) return;
+  is_song_told_ = true;
+  tell("the song is over: " + song_name_);
 }
 
 void Synth::read_keys(std::int64_t now_ns) {
@@ -215,13 +246,21 @@ bool Synth::next_program() {
   do {
     program_entry_ = (program_entry_ + 1) % entries.size();
   } while (!is_melodic(entries[program_entry_]));
+  choose_entry(program_entry_);
   const engine::BankEntry& entry = entries[program_entry_];
   player_->play({channel_message(0xB0, 0, std::max(0, entry.bank_msb), 0),
                  channel_message(0xB0, 32, std::max(0, entry.bank_lsb), 0),
                  channel_message(0xC0, entry.program_low, 0, 0)});
-  follow_targets(static_cast<std::size_t>(player_->bank().entry_patch[program_entry_]));
   tell("channel 1 plays program " + std::to_string(entry.program_low) + ": " + entry.patch_file);
   return true;
+}
+
+/// Its names are what OSC knows, and tab goes on from there.
+void Synth::choose_entry(std::size_t entry) {
+  const auto& patches = player_->bank().entry_patch;
+  program_entry_ = entry < patches.size() ? entry : 0;
+  follow_targets(program_entry_ < patches.size() ? static_cast<std::size_t>(patches[program_entry_])
+                                                 : 0);
 }
 
 void Synth::begin_take() {
@@ -229,7 +268,8 @@ void Synth::begin_take() {
   const std::string wanted = options_.record.empty() ? "take.wav" : options_.record;
   const bool is_named = !options_.record.empty() && takes_ == 1;
   const std::string path = is_named ? wanted : free_take_path(wanted, takes_);
-  auto recorder = Recorder::start(player_->live(), path, player_->rate_hz());
+  auto recorder = Recorder::start(player_->live(), path, player_->rate_hz(),
+                                  is_named ? options_.duration_s : 0);
   if (!recorder) {
     has_failed_ = true;
     return tell("not recording: " + recorder.error().to_string());

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,17 +15,25 @@
 #include "player.h"
 #include "recorder.h"
 #include "resume.h"
+#include "song/song_file.h"
 #include "status.h"
 #include "terminal.h"
 
 namespace knotwave::synth {
 
+/// What is played, and what it is called to the user.
+struct Performance {
+  PlayableBank bank;
+  std::string name;  ///< empty: as its file
+  std::optional<song::SongFile> song;
+  std::string song_name;
+};
+
 class Synth {
  public:
-  /// Sounds when it returns. `name` is what the patch is called to the user where that is not its
-  /// path. Errors: those of the devices, of OSC and of the file to record into.
-  static Result<std::unique_ptr<Synth>> open(const SynthOptions& options, PlayableBank bank,
-                                             const std::string& name, const Resume& resume);
+  /// Sounds when it returns. Errors: those of the devices, of OSC and of the file to record into.
+  static Result<std::unique_ptr<Synth>> open(const SynthOptions& options, Performance performance,
+                                             const Resume& resume);
   ~Synth();
 
   enum class End {
@@ -44,6 +53,8 @@ class Synth {
   void follow_patch();
   void follow_network();
   void follow_take();
+  void follow_song();
+  bool is_time_over(std::int64_t now_ns) const;
   Result<void> open_learn();
   void learn_next();
   void follow_learn();
@@ -52,6 +63,7 @@ class Synth {
   void act(const KeyAction& action, std::int64_t now_ns);
   void next_patch();
   bool next_program();
+  void choose_entry(std::size_t entry);
   void wait(std::int64_t now_ns) const;
 
   void begin_take();
@@ -66,7 +78,7 @@ class Synth {
   void write_line(const std::string& line);
 
   SynthOptions options_;
-  std::string name_, first_path_;
+  std::string name_, first_path_, song_name_;
   std::unique_ptr<Player> player_;
   std::unique_ptr<PatchWatch> watch_;
   std::unique_ptr<OscDoor> osc_;
@@ -82,6 +94,7 @@ class Synth {
   std::size_t next_controller_ = 0;  ///< of the patch's, to be learnt
   int takes_ = 0;
   bool is_help_shown_ = false, is_quitting_ = false, has_failed_ = false, is_reader_gone_ = false;
+  bool is_song_told_ = false;
 };
 
 }  // namespace knotwave::synth

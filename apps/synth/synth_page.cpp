@@ -42,6 +42,7 @@ SynthStatus Synth::status(std::int64_t now_ns) {
   player_->describe(status);
   status.seconds = static_cast<double>(now_ns - start_ns_) * 1e-9;
   status.patch = name_.empty() ? watch_->path() : name_;
+  if (status.song_length_s > 0) status.song = song_name_;
   if (osc_) osc_->describe(status);
   if (recorder_) {
     status.recording = recorder_->path();

@@ -19,7 +19,7 @@ bool is_before(const PlacedMessage& a, const PlacedMessage& b) KNOTWAVE_RT {
 
 }  // namespace
 
-void LiveEngine::State::process(std::int64_t time_ns, std::span<const base::MidiEvent> exact,
+void LiveEngine::State::process(std::int64_t time_ns, std::span<const Event> exact,
                                 std::span<float> left, std::span<float> right) KNOTWAVE_RT {
   const std::int64_t first = engine->now();
   const std::int64_t end = first + static_cast<std::int64_t>(left.size());
@@ -55,7 +55,7 @@ void LiveEngine::State::take_bank() KNOTWAVE_RT {
   if (newest == nullptr) return;
   outgoing[static_cast<std::size_t>(outgoing_count++)] = playing;
   playing = newest;
-  Event& event = add_event(engine->now());
+  Event& event = add_event({engine->now(), 0});
   event.kind = Event::Kind::install_bank;
   event.bank = playing->program.get();
   record(event);
@@ -75,7 +75,7 @@ void LiveEngine::State::return_banks() KNOTWAVE_RT {
 }
 
 void LiveEngine::State::add_panic() KNOTWAVE_RT {
-  const std::int64_t now = engine->now();
+  const base::SampleTime now{engine->now(), 0};
   for (const auto& input : inputs) input->panic(clock);
   for (int channel = 0; channel < kChannelCount; ++channel) {
     for (const int controller : {kAllSoundOff, kResetControllers}) {
@@ -92,22 +92,30 @@ void LiveEngine::State::add_panic() KNOTWAVE_RT {
   }
 }
 
+/// When an exact event is played: where it says, but no earlier than now and before `end`.
+base::SampleTime LiveEngine::State::time_of(const Event& exact, std::int64_t first,
+                                            std::int64_t end) const KNOTWAVE_RT {
+  const base::SampleTime now{engine->now(), 0};
+  const base::SampleTime time{first + exact.time().sample, exact.time().fraction};
+  return time.sample >= end ? base::SampleTime{end - 1, 0} : std::max(time, now);
+}
+
 // Adds what is due before `end` to the events, in order of time, and says up to where they are
 // complete: `end`, unless there were too many.
-std::int64_t LiveEngine::State::gather(std::span<const base::MidiEvent>& exact, std::int64_t first,
+std::int64_t LiveEngine::State::gather(std::span<const Event>& exact, std::int64_t first,
                                        std::int64_t end) KNOTWAVE_RT {
   for (;;) {
     const int input = next_input();
     const PlacedMessage* live =
         input < 0 ? nullptr : inputs[static_cast<std::size_t>(input)]->front();
     if (live != nullptr && live->sample >= end) live = nullptr;
-    const std::int64_t exact_at =
-        exact.empty() ? end : std::clamp(first + exact.front().time.sample, engine->now(), end - 1);
     if (live == nullptr && exact.empty()) return end;
-    const bool takes_exact = live == nullptr || exact_at <= live->sample;
-    if (event_count == events.size()) return takes_exact ? exact_at : live->sample;
+    const base::SampleTime exact_at =
+        exact.empty() ? base::SampleTime{end, 0} : time_of(exact.front(), first, end);
+    const bool takes_exact = live == nullptr || exact_at <= base::SampleTime{live->sample, 0};
+    if (event_count == events.size()) return takes_exact ? exact_at.sample : live->sample;
     if (takes_exact) {
-      add_exact(exact.front(), first, end);
+      add_exact(exact.front(), exact_at);
       exact = exact.subspan(1);
     } else {
       add_message(*live);
@@ -129,19 +137,19 @@ int LiveEngine::State::next_input() const KNOTWAVE_RT {
   return first;
 }
 
-Event& LiveEngine::State::add_event(std::int64_t sample) KNOTWAVE_RT {
+Event& LiveEngine::State::add_event(base::SampleTime time) KNOTWAVE_RT {
   // In order even where a caller's exact ones are not.
-  const std::int64_t before = event_count == 0 ? sample : events[event_count - 1].midi.time.sample;
+  const base::SampleTime before = event_count == 0 ? time : events[event_count - 1].time();
   Event& event = events[event_count++];
   event = {};
-  event.midi.time.sample = std::max(sample, before);
+  event.midi.time = std::max(time, before);
   return event;
 }
 
 void LiveEngine::State::add_message(const PlacedMessage& placed) KNOTWAVE_RT {
   const LiveMessage& message = placed.message;
   auto& bytes = sysex[event_count];
-  Event& event = add_event(placed.sample);
+  Event& event = add_event({placed.sample, 0});
   std::copy_n(message.bytes, 3, event.midi.bytes);
   event.midi.port = message.port;
   switch (message.kind) {
@@ -173,21 +181,23 @@ void LiveEngine::State::add_message(const PlacedMessage& placed) KNOTWAVE_RT {
   record(event);
 }
 
-void LiveEngine::State::add_exact(const base::MidiEvent& midi, std::int64_t first,
-                                  std::int64_t end) KNOTWAVE_RT {
-  const std::int64_t sample = std::clamp(first + midi.time.sample, engine->now(), end - 1);
+void LiveEngine::State::add_exact(const Event& exact, base::SampleTime at) KNOTWAVE_RT {
+  // A bank comes by install(), which keeps it.
+  if (exact.kind == Event::Kind::install_bank) return;
   auto& bytes = sysex[event_count];
-  Event& event = add_event(sample);
-  const base::SampleTime time = event.midi.time;
-  event.midi = midi;
+  Event& event = add_event(at);
+  const base::SampleTime time = event.time();
+  event = exact;
   event.midi.time = time;
   // What the journal cannot hold is not played either.
-  const bool fits = midi.sysex != nullptr && midi.sysex_size <= bytes.size();
+  const bool fits = exact.midi.sysex != nullptr && exact.midi.sysex_size <= bytes.size();
   event.midi.sysex = fits ? bytes.data() : nullptr;
-  event.midi.sysex_size = fits ? midi.sysex_size : 0;
-  if (fits) std::copy_n(midi.sysex, midi.sysex_size, bytes.begin());
-  std::copy_n(midi.bytes, 3, status.last_midi);
-  ++exact_messages;
+  event.midi.sysex_size = fits ? exact.midi.sysex_size : 0;
+  if (fits) std::copy_n(exact.midi.sysex, exact.midi.sysex_size, bytes.begin());
+  if (exact.kind == Event::Kind::midi) {
+    std::copy_n(exact.midi.bytes, 3, status.last_midi);
+    ++exact_messages;
+  }
   record(event);
 }
 

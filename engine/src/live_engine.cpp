@@ -147,8 +147,8 @@ LiveEngine::Tap LiveEngine::take_tap(std::span<float> interleaved) {
   return state_->tap.read(interleaved);
 }
 
-void LiveEngine::process(std::int64_t time_ns, std::span<const base::MidiEvent> exact,
-                         std::span<float> left, std::span<float> right) KNOTWAVE_RT {
+void LiveEngine::process(std::int64_t time_ns, std::span<const Event> exact, std::span<float> left,
+                         std::span<float> right) KNOTWAVE_RT {
   const std::size_t frames = std::min(left.size(), right.size());
   if (frames > 0) state_->process(time_ns, exact, left.first(frames), right.first(frames));
 }

@@ -37,17 +37,19 @@ struct LiveEngine::State {
   State& operator=(const State&) = delete;
 
   // live_block.cpp, all [audio].
-  void process(std::int64_t time_ns, std::span<const base::MidiEvent> exact, std::span<float> left,
+  void process(std::int64_t time_ns, std::span<const Event> exact, std::span<float> left,
                std::span<float> right) KNOTWAVE_RT;
   void take_bank() KNOTWAVE_RT;
   void return_banks() KNOTWAVE_RT;
   void add_panic() KNOTWAVE_RT;
-  std::int64_t gather(std::span<const base::MidiEvent>& exact, std::int64_t first,
+  base::SampleTime time_of(const Event& exact, std::int64_t first,
+                           std::int64_t end) const KNOTWAVE_RT;
+  std::int64_t gather(std::span<const Event>& exact, std::int64_t first,
                       std::int64_t end) KNOTWAVE_RT;
   int next_input() const KNOTWAVE_RT;
-  Event& add_event(std::int64_t sample) KNOTWAVE_RT;
+  Event& add_event(base::SampleTime time) KNOTWAVE_RT;
   void add_message(const PlacedMessage& placed) KNOTWAVE_RT;
-  void add_exact(const base::MidiEvent& event, std::int64_t first, std::int64_t end) KNOTWAVE_RT;
+  void add_exact(const Event& exact, base::SampleTime at) KNOTWAVE_RT;
   void record(const Event& event) KNOTWAVE_RT;
   void publish_status() KNOTWAVE_RT;
 

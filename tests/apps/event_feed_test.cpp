@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "event_feed.h"
+#include "song/event_feed.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "support/seed.h"
 
-namespace knotwave::render {
+namespace knotwave::song {
 namespace {
 
 using Kind = engine::Event::Kind;
@@ -105,4 +105,4 @@ TEST(EventFeed, NoEventIsGivenAtOrPastTheEndOfItsBlock) {
 }
 
 }  // namespace
-}  // namespace knotwave::render
+}  // namespace knotwave::song

@@ -41,8 +41,13 @@ TEST(SynthCommandLine, WhatDoesNotGoTogetherIsTold) {
             told("--demo plays its own patch; leave out 'a.toml'"));
   EXPECT_EQ(answer({"--plain", "--json-status"}),
             told("--plain and --json-status are two kinds of output; choose"));
-  EXPECT_EQ(answer({"song.mid"}), told("'song.mid' is named as a MIDI file; knotwave-render plays "
-                                       "those, into a file"));
+  EXPECT_EQ(answer({"song.mid"}),
+            told("'song.mid' is named as a MIDI file; play it with a patch or "
+                 "a bank: PATCH --song 'song.mid'"));
+  EXPECT_EQ(answer({"--demo", "first-light", "--song", "song.mid"}),
+            told("--demo plays its own song; leave out --song 'song.mid'"));
+  EXPECT_EQ(answer({"--song", "song.mid"}),
+            told("--song needs a patch or a bank to play 'song.mid' with: PATCH --song FILE"));
   EXPECT_EQ(answer({"--record", "a.mp3"}),
             told("--record: 'a.mp3' ends neither in .wav nor in .flac"));
   EXPECT_EQ(answer({"--audio-api", "none", "--audio-device", "1"}),

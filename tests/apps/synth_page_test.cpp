@@ -47,6 +47,9 @@ SynthStatus playing() {
   status.live.last_midi[1] = 60;
   status.live.last_midi[2] = 96;
   status.midi = {{0, "alsa", "Keystep", true, 17, 0}, {1, "alsa", "Faders", false, 0, 0}};
+  status.song = "prelude.mid";
+  status.song_s = 62.5;
+  status.song_length_s = 125;
   status.has_keys = true;
   status.messages = {"now playing bell.toml"};
   return status;
@@ -66,7 +69,7 @@ TEST(Page, SaysAllAtAGlance) {
        {"Bell  (bell.toml)", "jack: system, 48000 Hz, 256 frames, latency 10.7 ms",
         "Keystep, Faders (gone), its own JACK port", "note on C4 (60), velocity 96, channel 1",
         "mean 12 %  p99 25 %  max 31 %   xruns 2", "5  peak 0", "-6.0 dBFS", "silence",
-        "now playing bell.toml", "octave 4"}) {
+        "now playing bell.toml", "octave 4", "song    1:02.5 of 2:05.0  prelude.mid"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
 }
@@ -168,6 +171,7 @@ TEST(StatusLines, JsonIsOneLineWithEveryField) {
   EXPECT_THAT(line, HasSubstr("\"state\": \"running\""));
   EXPECT_THAT(line, HasSubstr("\"peak_left_dbfs\": -6.0206, \"peak_right_dbfs\": null"));
   EXPECT_THAT(line, HasSubstr("{\"api\": \"alsa\", \"name\": \"Faders\", \"open\": false"));
+  EXPECT_THAT(line, HasSubstr("\"song\": \"prelude.mid\", \"song_s\": 62.5, "));
   EXPECT_EQ(line.find('\n'), std::string::npos);
 }
 

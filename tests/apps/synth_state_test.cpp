@@ -7,6 +7,7 @@
 
 #include "held_state.h"
 #include "port_notes.h"
+#include "resume.h"
 
 namespace knotwave::synth {
 namespace {
@@ -99,6 +100,31 @@ TEST(HeldState, WordsThatAreNoMessagesAreLeftOut) {
   EXPECT_THAT(messages_in(""), IsEmpty());
   EXPECT_THAT(messages_in("x\n0 1 2\n9 144 60 90 0 0\n0 144 -60 90 0 0\n0 144 60 90 0 nan\n"),
               IsEmpty());
+}
+
+TEST(Resume, ComesBackThroughTheEnvironmentAndLeavesItClean) {
+  Resume resume;
+  resume.patch = "a b/\xff.toml";
+  resume.demo_file = "/patches/bell.toml";
+  resume.program_entry = 7;
+  resume.song_s = 1.0 / 3;
+  resume.takes = 2;
+  resume.api = "alsa";
+  resume.rate_hz = 44100;
+  leave_resume(resume);
+  const Resume again = take_resume();
+  EXPECT_EQ(again.patch, resume.patch);
+  EXPECT_EQ(again.demo_file, resume.demo_file);
+  EXPECT_EQ(again.program_entry, 7);
+  EXPECT_EQ(again.song_s, 1.0 / 3) << "every digit";
+  EXPECT_EQ(again.takes, 2);
+  EXPECT_EQ(again.api, "alsa");
+  EXPECT_EQ(again.rate_hz, 44100);
+  EXPECT_FALSE(again.is_first_start());
+  const Resume first = take_resume();
+  EXPECT_TRUE(first.is_first_start());
+  EXPECT_TRUE(first.patch.empty() && first.demo_file.empty());
+  EXPECT_LT(first.song_s, 0);
 }
 
 base::MidiEvent event(int a, int b, int c) {

@@ -185,7 +185,7 @@ class Rounds {
   void tell(const Deed& deed, std::int64_t block_begin) {
     if (deed.is_exact) {
       const auto& bytes = deed.message.bytes;
-      exact_.push_back({{deed.sample - block_begin, 0}, {bytes[0], bytes[1], bytes[2]}});
+      exact_.push_back({.midi = {{deed.sample - block_begin, 0}, {bytes[0], bytes[1], bytes[2]}}});
       return;
     }
     LiveMessage message = deed.message;
@@ -211,7 +211,7 @@ class Rounds {
   const std::vector<Deed> deeds_ = score();
   const std::vector<std::size_t> sizes_ = blocks();
   std::unique_ptr<LiveEngine> live_;
-  std::vector<base::MidiEvent> exact_;
+  std::vector<engine::Event> exact_;
   Journal journal_;
   std::int64_t frame_ = 0, blocks_ = 0;
   std::vector<float> left_ = std::vector<float>(kRound), right_ = std::vector<float>(kRound);

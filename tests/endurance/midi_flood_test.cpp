@@ -142,7 +142,7 @@ class Flood {
       // What is exact refers to system exclusive data until the block is over.
       if (is_exact && event.sysex_size == 0 && exact_.size() < exact_.capacity()) {
         event.time.sample = below(kBlock);
-        exact_.push_back(event);
+        exact_.push_back({.midi = event});
       } else {
         live_->push(static_cast<int>(cable), live_message(event, time_ns() - below(2'000'000)));
       }
@@ -184,7 +184,7 @@ class Flood {
   base::RandomStream random_{support::test_seed(), 0, 7201};
   std::uint64_t draw_ = 0;
   std::vector<std::uint8_t> bytes_;
-  std::vector<base::MidiEvent> exact_;
+  std::vector<engine::Event> exact_;
   Journal journal_;
   std::array<float, kBlock> left_{}, right_{};
   std::array<std::int64_t, 16> of_status_{};

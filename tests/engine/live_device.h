@@ -50,6 +50,11 @@ class Device {
 
   void block(std::size_t frames, std::int64_t jitter_ns = 0,
              std::span<const base::MidiEvent> exact = {}) {
+    std::vector<Event> events(exact.size());
+    for (std::size_t i = 0; i < exact.size(); ++i) events[i].midi = exact[i];
+    block_with(frames, jitter_ns, events);
+  }
+  void block_with(std::size_t frames, std::int64_t jitter_ns, std::span<const Event> exact) {
     const std::int64_t time = time_ns() + jitter_ns;
     const std::size_t at = sound_.left.size();
     sound_.left.resize(at + frames, 9.0F);

@@ -113,6 +113,47 @@ TEST(LiveEngine, MessagesOfSeveralInputsComeInOrderOfTimeAndAtOneTimeInOrderOfIn
   EXPECT_EQ(journal.records.back().time.sample, 1024 + 511);
 }
 
+TEST(LiveEngine, ExactEventsOfEveryKindPlayAsOfflineFractionsOfASampleIncluded) {
+  const auto bank = bank_from(kPlain);
+  const base::RandomStream random{support::test_seed(), 0, 3004};
+  std::vector<Event> events;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    const auto key = static_cast<std::uint8_t>(60 + i % 12);
+    Event event;
+    event.midi.time = {static_cast<std::int64_t>(400 * i + random.bits(2 * i) % 300),
+                       static_cast<std::uint32_t>(random.bits(2 * i + 1))};
+    event.midi.bytes[0] = i % 2 == 0 ? 0x90 : 0x80;
+    event.midi.bytes[1] = i % 2 == 0 ? key : static_cast<std::uint8_t>(key - 1);
+    event.midi.bytes[2] = 100;
+    if (i % 10 == 5) event.kind = Event::Kind::tempo;
+    if (i % 10 == 9) event.kind = Event::Kind::all_notes_off;
+    events.push_back(event);
+  }
+  const auto live = live_for(bank_from(kPlain));
+  Device device(*live);
+  std::size_t next = 0;
+  while (device.frames() < 25000) {
+    const auto frames = static_cast<std::int64_t>(1 + random.bits(1000 + next) % 700);
+    std::vector<Event> due;
+    for (; next < events.size() && events[next].time().sample < device.frames() + frames; ++next) {
+      due.push_back(events[next]);
+      due.back().midi.time.sample -= device.frames();
+    }
+    device.block_with(static_cast<std::size_t>(frames), 0, due);
+  }
+  const auto offline = engine_for(*bank, {});
+  const Sound expected = play(*offline, events, static_cast<std::size_t>(device.frames()));
+  EXPECT_GT(peak(expected.left), 0.01);
+  EXPECT_EQ(device.sound().left, expected.left);
+  EXPECT_EQ(device.sound().right, expected.right);
+  const Journal journal = journal_of(*live);
+  ASSERT_EQ(journal.records.size(), events.size());
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    EXPECT_EQ(journal.records[i].time, events[i].time());
+    EXPECT_EQ(journal.records[i].kind, events[i].kind);
+  }
+}
+
 TEST(LiveEngine, AMessageWithoutATimeAndALateOneSoundAtTheFirstSampleOfTheBlock) {
   const auto live = live_for(bank_from(kPlain));
   Device device(*live);

@@ -142,7 +142,8 @@ TEST(LiveSession, PlayedFromItsJournalGivesTheSameBits) {
       const auto frames =
           static_cast<std::size_t>(1 + (dice.below(4) == 0 ? dice.below(8192) : dice.below(600)));
       for (int i = dice.below(4); i > 0; --i) {
-        exact.push_back({{dice.below(static_cast<int>(frames)), 0}, {0x92, 60, 100}});
+        const auto fraction = static_cast<std::uint32_t>(dice.below(3)) << 30;
+        exact.push_back({{dice.below(static_cast<int>(frames)), fraction}, {0x92, 60, 100}});
       }
       device.block(frames, dice.below(1'000'000), exact);
       recording.take(*live);

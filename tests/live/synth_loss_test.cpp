@@ -178,5 +178,30 @@ TEST_F(SynthLoss, TheNotesOfAnUnpluggedKeyboardEnd) {
   expect_end(synth);
 }
 
+TEST_F(SynthLoss, ADemoStartedAnewPlaysThePatchThatTabChoseAndItsSongGoesOn) {
+  SynthProcess synth({"--demo", "bwv846_prelude", "--audio-api", "portaudio-jack"}, at_terminal());
+  ASSERT_TRUE(synth.says("octave 4")) << synth.out();
+  ASSERT_TRUE(synth.says("0:01.")) << "of the song";
+  for (int i = 0; i < 2; ++i) synth.type("\t");
+  ASSERT_TRUE(synth.says("channel 1 plays program 6: ")) << synth.out();
+  server_.kill();
+  ASSERT_TRUE(synth.says("the sound device is lost")) << synth.err();
+  ASSERT_TRUE(server_.restart()) << server_.log();
+  std::string anew;  // what the second process says
+  const auto plays = [&] {
+    const std::string out = synth.out();
+    const std::size_t ended = out.find("\x1b[?1049l");
+    if (ended != std::string::npos) anew = out.substr(ended);
+    return anew.find("sound   portaudio-jack: system") != std::string::npos;
+  };
+  EXPECT_LT(seconds_until(plays, 20), 5.0) << synth.out();
+  EXPECT_NE(anew.find("song    0:0"), std::string::npos) << anew;
+  EXPECT_EQ(anew.find("song    0:00."), std::string::npos) << "it began again";
+  synth.type("\t");
+  EXPECT_TRUE(synth.says("channel 1 plays program 8: ")) << "tab goes on where it was";
+  synth.type("q");
+  EXPECT_EQ(synth.exit_code(), 0);
+}
+
 }  // namespace
 }  // namespace knotwave::synth

@@ -43,6 +43,8 @@ SynthProcess::SynthProcess(std::vector<std::string> words, const Options& option
   if (options.has_terminal) {
     winsize size{30, 100, 0, 0};
     if (::openpty(&terminal_, &terminal_other_, nullptr, nullptr, &size) != 0) std::abort();
+    // A server that is started meanwhile must not keep the terminal open.
+    for (const int fd : {terminal_, terminal_other_}) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
   } else if (::pipe(out) != 0 || ::pipe(err) != 0) {
     std::abort();
   }

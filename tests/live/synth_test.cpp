@@ -93,6 +93,28 @@ TEST_F(SynthUnderJack, AScoreIsHeardSampleForSampleAndItsTakeRendersAgainToTheSa
   EXPECT_EQ(song->events.size(), score.size());
 }
 
+TEST_F(SynthUnderJack, ASongIsPlayedAndRecordedToTheVerySamplesOfItsRender) {
+  ASSERT_EQ(run({"small.toml", "small.mid", "-o", "render.wav", "--bits", "32f", "--tail", "1"})
+                .exit_code,
+            0);
+  const auto render = io::read_sound(file("render.wav"));
+  ASSERT_TRUE(render.has_value()) << render.error().to_string();
+  const std::string seconds = std::to_string(static_cast<double>(render->frames) / 48000);
+  for (const char* api : {"jack", "none"}) {
+    const std::string take = std::string(api) + ".wav";
+    SynthProcess synth({"small.toml", "--song", "small.mid", "--audio-api", api, "--record", take,
+                        "--duration", seconds},
+                       here());
+    EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+    EXPECT_THAT(synth.err(), HasSubstr("the song is over: small.mid"));
+    const auto heard = io::read_sound(file(take));
+    ASSERT_TRUE(heard.has_value()) << heard.error().to_string();
+    EXPECT_EQ(heard->frames, render->frames) << "as long as --duration says";
+    EXPECT_EQ(heard->samples, render->samples) << api;
+  }
+  ASSERT_LT(onset(render->samples), 2000u);
+}
+
 TEST_F(SynthUnderJack, ASavedPatchIsHeardAndABrokenOneToldWhileTheOldOnePlaysOn) {
   SynthProcess synth({"small.toml", "--json-status", "--record", "take.wav"}, here());
   ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();

@@ -57,10 +57,10 @@ class Storm {
     for (int i = 0; i < 3; ++i) push();
     if (blocks_ % 500 == 499) live_.panic();
     if (blocks_ % 300 == 299) live_.fade(blocks_ % 600 < 300 ? 1.0F : 0.2F, 0.01F);
-    const std::array<base::MidiEvent, 1> exact = {
-        base::MidiEvent{{static_cast<std::int64_t>(bits() % kBlock), 0},
-                        {static_cast<std::uint8_t>(0xB0 | (bits() & 15)), 1,
-                         static_cast<std::uint8_t>(blocks_ & 127)}}};
+    const std::array<engine::Event, 1> exact = {
+        engine::Event{.midi = {{static_cast<std::int64_t>(bits() % kBlock), 0},
+                               {static_cast<std::uint8_t>(0xB0 | (bits() & 15)), 1,
+                                static_cast<std::uint8_t>(blocks_ & 127)}}}};
     time_ns_ += kBlockNs;
     live_.process(time_ns_, exact, left_, right_);
     for (const float sample : left_) loudest_ = std::max(loudest_, sample < 0 ? -sample : sample);

@@ -85,9 +85,10 @@ class LiveEngine {
   /// Renders a block of any size that the device asked for at `time_ns`. Messages heard since the
   /// last one are placed so that each sounds the same time after it was heard, in whole samples:
   /// LiveStatus::latency_frames, which is the longest recent block and as much more as blocks come
-  /// early, 0.5 ms at least. `exact` ones, whose time.sample is an offset in this block, sound
-  /// where they say, the first of those at one sample. [audio] left and right are overwritten.
-  void process(std::int64_t time_ns, std::span<const base::MidiEvent> exact, std::span<float> left,
+  /// early, 0.5 ms at least. `exact` events of any kind but install_bank, whose time is an offset
+  /// in this block, are played where they say, fraction included, the first of those at one sample.
+  /// [audio] left and right are overwritten.
+  void process(std::int64_t time_ns, std::span<const Event> exact, std::span<float> left,
                std::span<float> right) KNOTWAVE_RT;
 
  private:

@@ -9,7 +9,7 @@
 #include "knotwave/engine/event.h"
 #include "knotwave/io/midi_file.h"
 
-namespace knotwave::render {
+namespace knotwave::song {
 
 /// A message of a song, without its time.
 engine::Event engine_event(const io::Song& song, const io::SongEvent& event);
@@ -41,4 +41,4 @@ class EventFeed {
   std::vector<engine::Event> block_;
 };
 
-}  // namespace knotwave::render
+}  // namespace knotwave::song

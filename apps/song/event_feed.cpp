@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "event_feed.h"
 
-namespace knotwave::render {
+namespace knotwave::song {
 
 EventFeed::EventFeed(const io::Song& song, int rate_hz)
     : song_(song),
@@ -66,4 +66,4 @@ std::span<const engine::Event> EventFeed::before(std::int64_t end) {
   return block_;
 }
 
-}  // namespace knotwave::render
+}  // namespace knotwave::song

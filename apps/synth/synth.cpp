@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kTickNs = 50 * kMs;
-constexpr double kTakeWaitSeconds = 1;
+constexpr double kTakeWaitSeconds = 5;  ///< servers of a busy machine stand still for a while
 
 PlayerConfig player_config(const SynthOptions& o) {
   PlayerConfig config;
@@ -87,6 +87,7 @@ Result<std::unique_ptr<Synth>> Synth::open(const SynthOptions& options, Performa
     if (synth->has_failed_) return fail(ErrorCode::io_failed, synth->messages_.back());
   }
   if (auto good = synth->player_->start(); !good) return good.error();
+  synth->start_ns_ = io::steady_clock_ns();
   return synth;
 }
 

@@ -34,7 +34,7 @@ class MidiEntry {
                                             std::int64_t time_ns, double rate_hz) KNOTWAVE_RT;
   /// Who was connected to the stream's own port went: what it holds ends with the next block. [any]
   void stream_sender_left() noexcept { has_sender_left_ = true; }
-  /// Bit p: port p is not listened to, as the stream's own port hears the same. [any]
+  /// Bit p: port p is not listened to; the stream's own port hears it, or will. [any]
   void leave_out(std::uint32_t ports) noexcept { left_out_ = ports; }
   /// Nothing is held any more, and every controller is back. [control]
   void forget() noexcept;

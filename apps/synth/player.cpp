@@ -44,6 +44,7 @@ Result<std::unique_ptr<Player>> Player::open(const PlayerConfig& config, Playabl
   if (auto good = player->open_stream(config); !good) return good.error();
   if (auto good = player->make_engine(config.song_position_s); !good) return good.error();
   io::MidiInputConfig midi_config = config.midi;
+  player->share_inputs();
   midi_config.client_name = config.audio.client_name + "-midi";  // JACK gives each name once
   auto midi = io::MidiInputs::open(midi_config, *player);
   const bool is_midi_chosen = !config.midi.api.empty() || !config.midi.ports.empty();
@@ -172,10 +173,10 @@ void Player::tick(std::int64_t now_ns, std::vector<std::string>& told) {
   live_->collect();
   journal();
   tell_midi(told);
+  share_inputs();
   const io::AudioStatus status = stream_->status();
   if (is_leaving_) leave_device(told);
   if (!is_lost_ && status.state == io::AudioStatus::State::lost) lose(status.reason, told);
-  leave_to_stream(status.midi_sources);
   follow_senders(status.midi_sources, told);
   follow_hang(now_ns);
   if (is_lost_ && !is_leaving_ && !wants_restart_) look_for_device(now_ns, told);
@@ -191,14 +192,22 @@ void Player::follow_hang(std::int64_t now_ns) {
   wants_restart_ = wants_restart_ || now_ns - hangs_since_ns_ >= patience_ns;
 }
 
-/// Ports of JACK that are connected to the stream's own port are heard once: there.
-void Player::leave_to_stream(const std::vector<std::string>& sources) {
-  std::uint32_t bits = 0;
+/// What comes by JACK is exact to the sample in the stream's own port, so it is heard there and not
+/// by RtMidi, and no port is listened to before it is known whose it is.
+void Player::share_inputs() {
+  if (!stream_->format().has_midi) return entry_.leave_out(0);
+  std::vector<std::string> sources;
+  std::uint32_t listened = 0;
   for (const auto& port : ports_) {
-    const bool is_there = std::find(sources.begin(), sources.end(), port.name) != sources.end();
-    if (port.api == "jack" && port.is_open && is_there) bits |= std::uint32_t{1} << port.port;
+    if (!port.is_open) continue;
+    if (port.api == "jack" && !port.is_own) {
+      sources.push_back(port.name);
+    } else {
+      listened |= std::uint32_t{1} << port.port;
+    }
   }
-  entry_.leave_out(bits);
+  entry_.leave_out(~listened);
+  stream_->connect_midi(sources);
 }
 
 /// Whose of the notes are is not known, so all end; but what is held outlives the device.

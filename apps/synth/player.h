@@ -96,7 +96,7 @@ class Player final : private io::AudioClient, private io::MidiListener {
   void take_device(std::unique_ptr<io::AudioStream> stream, std::vector<std::string>& told);
   void start_found(std::vector<std::string>& told);
   void tell_midi(std::vector<std::string>& told);
-  void leave_to_stream(const std::vector<std::string>& sources);
+  void share_inputs();
   void follow_senders(const std::vector<std::string>& sources, std::vector<std::string>& told);
 
   PlayerConfig config_;

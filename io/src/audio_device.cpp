@@ -108,6 +108,8 @@ OpenedStream AudioStream::open(const AudioConfig& asked, AudioClient& client) {
   return open_portaudio_stream(config, *device, client);
 }
 
+void AudioStream::connect_midi(const std::vector<std::string>& /*sources*/) {}
+
 bool AudioStream::is_poisoned() noexcept {
   return jack_calls().is_stuck() || portaudio_calls().is_stuck();
 }

@@ -66,6 +66,12 @@ void JackGraph::set_news_callbacks() {
         return 0;
       },
       this);
+  jack_set_port_registration_callback(
+      client(),
+      [](jack_port_id_t /*port*/, int comes, void* us) {
+        if (comes != 0) static_cast<JackGraph*>(us)->news_.ports_came.fetch_add(1);
+      },
+      this);
   jack_set_buffer_size_callback(
       client(),
       [](jack_nframes_t frames, void* us) {

@@ -19,6 +19,7 @@ class JackGraph {
   /// What JACK told, for any thread to read.
   struct News {
     std::atomic<std::int64_t> xruns{0}, midi_dropped{0};
+    std::atomic<std::int64_t> ports_came{0};  ///< to the server, of anybody
     std::atomic<int> block_frames{0}, rate_hz{0};
     std::atomic<bool> is_freewheeling{false};
     std::atomic<bool> is_over{false};

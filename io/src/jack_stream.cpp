@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A stream as a client of JACK.
+#include <algorithm>
 #include <cerrno>
+#include <utility>
 
 #include "knotwave/base/document.h"
 
@@ -15,6 +17,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kServerAnswersWithin{3000};
 constexpr std::chrono::milliseconds kClosesWithin{700};
+constexpr std::chrono::milliseconds kConnectsWithin{700};
 constexpr const char* kNotConnected = "not connected";
 
 class JackStream final : public AudioStream {
@@ -40,6 +43,7 @@ class JackStream final : public AudioStream {
   }
   const AudioFormat& format() const override { return format_; }
   AudioStatus status() override;
+  void connect_midi(const std::vector<std::string>& sources) override;
 
  private:
   void look();
@@ -51,7 +55,9 @@ class JackStream final : public AudioStream {
   AudioFormat format_;
   std::vector<std::string> playback_;  ///< the port each channel is connected to
   bool is_active_ = false, is_started_ = false;
-  std::string lost_;  ///< why
+  std::string lost_;                 ///< why
+  std::vector<std::string> joined_;  ///< MIDI sources that were connected
+  std::int64_t ports_seen_ = 0;      ///< of those that came to the server
   BlockWatch watch_;
 };
 
@@ -145,6 +151,33 @@ AudioStatus JackStream::status() {
   status.load_p99 = load.p99;
   status.load_max = load.max;
   return status;
+}
+
+void JackStream::connect_midi(const std::vector<std::string>& sources) {
+  if (!is_active_ || !lost_.empty()) return;
+  std::erase_if(joined_, [&](const std::string& name) {
+    return std::find(sources.begin(), sources.end(), name) == sources.end();
+  });
+  // One that went and came back at once has the same name.
+  if (std::exchange(ports_seen_, graph().news().ports_came) != graph().news().ports_came) {
+    joined_.clear();
+  }
+  std::vector<std::string> fresh;
+  for (const std::string& name : sources) {
+    if (std::find(joined_.begin(), joined_.end(), name) == joined_.end()) fresh.push_back(name);
+  }
+  if (fresh.empty()) return;
+  const auto joined = std::make_shared<std::vector<std::string>>();
+  const auto outcome = jack_calls().run(
+      kConnectsWithin, [graph = *graph_, fresh, joined, ours = format_.client_name + ":midi_in"] {
+        for (const std::string& name : fresh) {
+          const int fault = jack_connect(graph->client(), name.c_str(), ours.c_str());
+          if (fault == 0 || fault == EEXIST) joined->push_back(name);
+        }
+      });
+  // Where the server hangs, status() tells it soon; who is not in the graph yet is tried again.
+  if (outcome != PatientCall::Outcome::done) return;
+  joined_.insert(joined_.end(), joined->begin(), joined->end());
 }
 
 Result<void> check_server(jack_client_t* client, const AudioConfig& config) {

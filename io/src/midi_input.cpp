@@ -95,7 +95,7 @@ class RtMidiInputs : public MidiInputs {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       const Slot& slot = slots_[i];
       all.push_back({static_cast<int>(i), slot.api, slot.name, slot.input.has_value(),
-                     slot.cable->messages(), slot.cable->faults()});
+                     slot.is_virtual, slot.cable->messages(), slot.cable->faults()});
     }
     return all;
   }

@@ -93,6 +93,48 @@ TEST_F(SynthUnderJack, AScoreIsHeardSampleForSampleAndItsTakeRendersAgainToTheSa
   EXPECT_EQ(song->events.size(), score.size());
 }
 
+TEST_F(SynthUnderJack, KeyboardsOfJackAreConnectedByItselfAndHeardExactToTheSample) {
+  SynthProcess synth({"small.toml", "--json-status", "--record", "take.wav"}, here());
+  ASSERT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
+  std::vector<JackMidiSender::Message> score;
+  for (int i = 0; i < 40; ++i) {
+    score.push_back(at(1000 + 1237 * i, {0x90, 60, 100}));
+    score.push_back(at(1000 + 1237 * i + 611, {0x80, 60, 0}));
+  }
+  for (int round = 0; round < 2; ++round) {
+    JackMidiSender sender(kMidiIn, score, JackMidiSender::Connects::by_others);
+    ASSERT_TRUE(sender.is_connected()) << synth.err();
+    ASSERT_TRUE(synth.says("\"name\": \"sender:out\", \"open\": true"));
+    seconds_until([&] { return synth.says("MIDI input 'sender:out' (jack) is open", 0); }, 10);
+    ASSERT_TRUE(sender.wait_until_sent(20));
+    seconds_until([&] { return synth.number("voices") == 0; }, 5);
+  }
+  ASSERT_TRUE(synth.says("'sender:out' was unplugged"));
+  synth.signal(SIGTERM);
+  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+  const auto song = io::read_midi_file(file("take.mid"));
+  ASSERT_TRUE(song.has_value()) << song.error().to_string();
+  // The first may have come before the listener of the MIDI ports was left out; each once, though.
+  ASSERT_EQ(song->events.size(), 2 * score.size());
+  for (std::size_t round = 0; round < 2; ++round) {
+    const auto* events = &song->events[round * score.size()];
+    for (std::size_t i = 1; i < score.size(); ++i) {
+      EXPECT_EQ(static_cast<std::int64_t>(events[i].tick - events[0].tick),
+                score[i].after - score[0].after);
+    }
+  }
+}
+
+TEST_F(SynthUnderJack, OnlyTheInputsThatWereNamedAreConnected) {
+  JackMidiSender first("", {}), second("", {});
+  SynthProcess synth({"small.toml", "--json-status", "--midi-in", "sender-01"}, here());
+  EXPECT_LT(seconds_until([&] { return second.is_connected_to(kMidiIn); }, 20), 20) << synth.err();
+  EXPECT_FALSE(first.is_connected_to(kMidiIn));
+  EXPECT_TRUE(synth.says("\"name\": \"sender-01:out\", \"open\": true")) << synth.err();
+  synth.signal(SIGTERM);
+  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+}
+
 TEST_F(SynthUnderJack, ASongIsPlayedAndRecordedToTheVerySamplesOfItsRender) {
   ASSERT_EQ(run({"small.toml", "small.mid", "-o", "render.wav", "--bits", "32f", "--tail", "1"})
                 .exit_code,

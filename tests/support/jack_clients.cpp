@@ -2,6 +2,7 @@
 #include "support/jack_clients.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <functional>
 #include <thread>
@@ -83,7 +84,8 @@ std::vector<float> JackCapture::channel(std::size_t channel) const {
 
 void JackCapture::set_freewheel(bool on) { jack_set_freewheel(client_, on ? 1 : 0); }
 
-JackMidiSender::JackMidiSender(const std::string& destination, std::vector<Message> messages)
+JackMidiSender::JackMidiSender(const std::string& destination, std::vector<Message> messages,
+                               Connects connects)
     : messages_(std::move(messages)) {
   client_ = jack_client_open("sender", JackNoStartServer, nullptr);
   if (client_ == nullptr) return;
@@ -93,7 +95,12 @@ JackMidiSender::JackMidiSender(const std::string& destination, std::vector<Messa
       [](jack_nframes_t n, void* us) { return static_cast<JackMidiSender*>(us)->process(n); },
       this);
   if (jack_activate(client_) != 0) return;
-  is_connected_ = jack_connect(client_, jack_port_name(port_), destination.c_str()) == 0;
+  if (connects == Connects::by_others) {
+    is_connected_ = wait_until([&] { return is_connected_to(destination); }, 10);
+  } else if (!destination.empty()) {
+    const int fault = jack_connect(client_, jack_port_name(port_), destination.c_str());
+    is_connected_ = fault == 0 || fault == EEXIST;  // somebody else may have been quicker
+  }
   may_begin_ = true;
 }
 
@@ -118,6 +125,10 @@ int JackMidiSender::process(jack_nframes_t frames) {
   }
   is_sent_ = true;
   return 0;
+}
+
+bool JackMidiSender::is_connected_to(const std::string& port) const {
+  return jack_port_connected_to(port_, port.c_str()) != 0;
 }
 
 bool JackMidiSender::wait_until_sent(double timeout_s) const {

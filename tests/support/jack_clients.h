@@ -51,13 +51,17 @@ class JackMidiSender {
     std::int64_t after = 0;  ///< frames after the first cycle that begins when all is connected
     std::vector<std::uint8_t> bytes;
   };
-  /// In order of time.
-  JackMidiSender(const std::string& destination, std::vector<Message> messages);
+  enum class Connects { itself, by_others };
+  /// In order of time. by_others: waits up to 10 s until somebody has connected it. Without a
+  /// destination nothing is waited for.
+  JackMidiSender(const std::string& destination, std::vector<Message> messages,
+                 Connects connects = Connects::itself);
   ~JackMidiSender();
   JackMidiSender(const JackMidiSender&) = delete;
   JackMidiSender& operator=(const JackMidiSender&) = delete;
 
   bool is_connected() const { return is_connected_; }
+  bool is_connected_to(const std::string& port) const;  ///< now
   bool wait_until_sent(double timeout_s) const;
   /// JACK's frame time that `after` counts from.
   jack_nframes_t begin_frame_time() const { return begin_; }

@@ -121,6 +121,12 @@ class AudioStream {
   /// Looks whether the device still lives: call it some ten times a second. Lost is told within 1 s
   /// (blocks longer than 0.2 s: within four of them) and stays: open another stream.
   virtual AudioStatus status() = 0;
+  /// jack, once it was started: connects ports of others that send MIDI, by JACK's names, to the
+  /// stream's own port, so that they are heard exact to the sample. Call it with all of them some
+  /// ten times a second: each is connected when it comes, and who takes that connection away keeps
+  /// it so until some port comes to the server. AudioStatus::midi_sources tells who is connected.
+  /// Elsewhere this does nothing.
+  virtual void connect_midi(const std::vector<std::string>& sources);
 
   /// A library hung, as PortAudio does when a JACK server dies, and has not come back: it cannot be
   /// used in this process, start the program anew. The thread that hangs in it is left behind and

@@ -50,6 +50,7 @@ struct MidiPortStatus {
   std::string api, name;
   bool is_open = false;  ///< false: gone; it gets its number again when it comes back,
                          ///< unless all numbers were taken meanwhile
+  bool is_own = false;   ///< the one that others connect to
   std::int64_t messages = 0;
   std::int64_t faults = 0;  ///< stray bytes, cut messages, system exclusive too long
 };

@@ -79,14 +79,14 @@ class Performance {
       return;
     }
     event.time.sample = played.offset;
-    exact_.push_back(event);
+    exact_.push_back({.midi = event});
   }
 
   const Script& script_;
   std::unique_ptr<engine::LiveEngine> live_;
   std::unique_ptr<const engine::BankProgram> next_bank_;
   std::size_t next_ = 0;
-  std::vector<base::MidiEvent> exact_;
+  std::vector<engine::Event> exact_;
   std::array<float, kBlockFrames> left_{}, right_{};
   base::Sha256 sha256_;
 };

@@ -46,7 +46,8 @@ SynthStatus playing() {
   status.live.last_midi[0] = 0x90;
   status.live.last_midi[1] = 60;
   status.live.last_midi[2] = 96;
-  status.midi = {{0, "alsa", "Keystep", true, false, 17, 0}, {1, "alsa", "Faders", false, false, 0, 0}};
+  status.midi = {{0, "alsa", "Keystep", true, false, 17, 0},
+                 {1, "alsa", "Faders", false, false, 0, 0}};
   status.song = "prelude.mid";
   status.song_s = 62.5;
   status.song_length_s = 125;

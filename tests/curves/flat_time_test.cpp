@@ -153,9 +153,10 @@ class Oracle {
     for (std::size_t i = 1; i < near_.size(); ++i) {
       if (std::abs(x - time_of(i)) < std::abs(x - time_of(k))) k = i;
     }
-    const Wide since = (Wide(x) - Wide(flat_.x0)) / Wide(flat_.scale);
-    const bool is_plain = near_.size() > 1 || k > 0;
-    const Wide gap = is_plain ? since - near_[k][0] : since;
+    const bool is_plain = near_.size() > 1;  // without weights
+    // Of a time near 0 nothing is left when it is told from elsewhere.
+    const Wide origin = Wide(flat_.x0) + Wide(flat_.scale) * near_[k][0];
+    const Wide gap = (Wide(x) - origin) / Wide(flat_.scale);
     const auto ahead = [&](Wide s) {
       Wide sum = 0;
       for (std::size_t j = near_[k].size(); j-- > 1;) sum = (sum + near_[k][j]) * s;

@@ -399,6 +399,16 @@ TEST(CompileFlatTime, MeetsTheClosedForm) {
   EXPECT_EQ(program->at_u(0), 0.5);
 }
 
+TEST(CompileFlatTime, TakesThePiecesThatCompileMdPrints) {
+  const auto pieces = [](int degree, double x0) {
+    const auto program = compile_function(plain_flat(degree, x0).curve);
+    return program ? program->piece_count() : 0;
+  };
+  EXPECT_EQ(pieces(5, 1), 107);
+  EXPECT_EQ(pieces(15, 1), 107);
+  EXPECT_EQ(pieces(15, 0), 651);
+}
+
 std::optional<Flat> random_flat(Draws& draw) {
   Plan plan;
   plan.degree = draw.whole(5, draw.chance(0.7) ? 9 : 15);

@@ -11,6 +11,8 @@
 
 namespace knotwave::engine {
 
+inline constexpr std::size_t kKeysOfAllChannels = 2048;
+
 /// Where one output of one patch goes.
 struct GeneratorRoute {
   int patch = 0, output = 0;
@@ -20,7 +22,7 @@ struct GeneratorRoute {
   int first_lane = -1, lanes = 0;  ///< of GeneratorRoutes::lanes; another route's if they share it
 
   /// Channels, and keys with poly pressure, that were told something: 128 (channel - 1) + key.
-  std::bitset<16 * 128> told;
+  std::bitset<kKeysOfAllChannels> told;
 };
 
 /// One value on a cable: of a voice, or of the newest voice of the patch that played last.

@@ -27,7 +27,7 @@ struct LaneAddress {
   int channel = 0;  ///< 0: nothing yet
   int key = 0;
   std::size_t place() const KNOTWAVE_RT {
-    return static_cast<std::size_t>(128 * (channel - 1) + key);
+    return 128 * static_cast<std::size_t>(channel - 1) + static_cast<std::size_t>(key);
   }
   static LaneAddress at(std::size_t place) KNOTWAVE_RT {
     return {static_cast<int>(place / 128) + 1, static_cast<int>(place % 128)};
@@ -98,7 +98,7 @@ struct EnvelopeGenerator::State {
   std::vector<std::uint64_t> newest_note;  ///< of each patch
   std::vector<std::uint64_t> played;       ///< counts up with each patch's new notes
   std::uint64_t notes_played = 0;
-  std::bitset<16 * 128> thru_keys;
+  std::bitset<kKeysOfAllChannels> thru_keys;
   std::bitset<16> thru_pedals;
   bool is_resting = false;
   std::int64_t rest_from = 0;

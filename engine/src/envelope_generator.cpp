@@ -185,7 +185,7 @@ std::vector<RouteStatus> EnvelopeGenerator::routes() const {
     }
     std::int64_t bytes = 0;
     for (int k = 0; k < route.lanes; ++k) {
-      const auto lane = static_cast<std::size_t>(route.first_lane + k);
+      const auto lane = static_cast<std::size_t>(route.first_lane) + static_cast<std::size_t>(k);
       const GeneratorLane& way = s.table.lanes[lane];
       const OutputPort& port = *s.ports[static_cast<std::size_t>(way.port)];
       const int step = port.last_step(way.port_lane);
@@ -253,7 +253,7 @@ void EnvelopeGenerator::State::visit_told() KNOTWAVE_RT {
     OutputPort& port = *ports[static_cast<std::size_t>(first.port)];
     bool is_done = true;
     for (int k = 0; k < route.lanes; ++k) {
-      const auto index = static_cast<std::size_t>(route.first_lane + k);
+      const auto index = static_cast<std::size_t>(route.first_lane) + static_cast<std::size_t>(k);
       if (!rows[index].is_told) continue;
       if (port.last_step(table.lanes[index].port_lane) == rest) {
         route.told[addresses[index].place()] = false;

@@ -8,8 +8,6 @@
 namespace knotwave::engine {
 namespace {
 
-const PortSpec kOwnPort{};  // for patches that name none
-
 bool is_same(const PortSpec& a, const PortSpec& b) {
   return a.device == b.device && a.wire == b.wire && a.running_status == b.running_status;
 }
@@ -93,7 +91,7 @@ Result<GeneratorRoutes> GeneratorRoutes::create(
   for (const EnvelopePatchProgram* patch : patches) {
     std::vector<int> own;
     std::vector<PortSpec> wanted = patch->spec().ports;
-    if (wanted.empty()) wanted.push_back(kOwnPort);
+    if (wanted.empty()) wanted.emplace_back();  // one of our own
     for (const PortSpec& port : wanted) {
       const auto placed = place_port(table.ports, port);
       if (!placed) return placed.error();

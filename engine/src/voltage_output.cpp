@@ -16,7 +16,7 @@ using base::Node;
 using base::TableReader;
 
 constexpr double kLeastFullScale = 0.01, kMostFullScale = 1000, kMostOffset = 1000;
-constexpr double kLeastRamp_s = 0.001, kMostRamp_s = 60;
+constexpr double kLeastRampSeconds = 0.001, kMostRampSeconds = 60;
 
 /// 0..1 along 3 t^2 - 2 t^3.
 double risen(std::int64_t passed, std::int64_t samples) KNOTWAVE_RT {
@@ -94,7 +94,7 @@ Result<VoltageOutput> VoltageOutput::create(const VoltageConfig& config, int cha
     return out_of_range("the rate is " + base::number_text(config.rate_hz) +
                         " Hz; 8000 to 768000 are possible");
   }
-  if (!(config.ramp_s >= kLeastRamp_s && config.ramp_s <= kMostRamp_s)) {
+  if (!(config.ramp_s >= kLeastRampSeconds && config.ramp_s <= kMostRampSeconds)) {
     return out_of_range("the ramp takes " + base::number_text(config.ramp_s) +
                         " s; 0.001 to 60 are possible");
   }

@@ -83,8 +83,7 @@ Result<std::unique_ptr<Synth>> Synth::open(const SynthOptions& options, Performa
   if (performance.song) synth->tell_all(performance.song->warnings);
   synth->player_->play(resume.held);
   if (!options.record.empty()) {
-    synth->begin_take();
-    if (synth->has_failed_) return fail(ErrorCode::io_failed, synth->messages_.back());
+    if (auto good = synth->begin_take(); !good) return good.error();
   }
   if (auto good = synth->player_->start(); !good) return good.error();
   synth->start_ns_ = io::steady_clock_ns();
@@ -214,7 +213,12 @@ void Synth::act(const KeyAction& action, std::int64_t now_ns) {
       player_->panic();
       break;
     case Kind::record:
-      recorder_ ? end_take() : begin_take();
+      if (recorder_) {
+        end_take();
+      } else if (auto good = begin_take(); !good) {
+        has_failed_ = true;
+        tell("not recording: " + good.error().message);
+      }
       break;
     case Kind::next_patch:
       next_patch();
@@ -264,19 +268,17 @@ void Synth::choose_entry(std::size_t entry) {
                                                  : 0);
 }
 
-void Synth::begin_take() {
+Result<void> Synth::begin_take() {
   ++takes_;
   const std::string wanted = options_.record.empty() ? "take.wav" : options_.record;
   const bool is_named = !options_.record.empty() && takes_ == 1;
   const std::string path = is_named ? wanted : free_take_path(wanted, takes_);
   auto recorder = Recorder::start(player_->live(), path, player_->rate_hz(),
                                   is_named ? options_.duration_s : 0);
-  if (!recorder) {
-    has_failed_ = true;
-    return tell("not recording: " + recorder.error().to_string());
-  }
+  if (!recorder) return recorder.error();
   recorder_ = *std::move(recorder);
   tell("recording " + path);
+  return {};
 }
 
 /// What went wrong with the files beside the sound.

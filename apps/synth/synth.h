@@ -66,7 +66,7 @@ class Synth {
   void choose_entry(std::size_t entry);
   void wait(std::int64_t now_ns) const;
 
-  void begin_take();
+  Result<void> begin_take();
   void end_take();
   std::vector<std::string> write_beside(const Recorder::Take& take);
 

@@ -61,6 +61,15 @@ TEST(SynthCommandLine, AMissingPatchIsToldWithTheNearestName) {
   EXPECT_THAT(done.err, HasSubstr("no/such.toml"));
 }
 
+TEST(SynthCommandLine, ATakeThatCannotBeWrittenIsToldOnce) {
+  const auto done =
+      run_program({"knotwave-synth", "--audio-api", "none", "--record", "/no such/a.wav"});
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_EQ(done.err,
+            "knotwave-synth: error: cannot write into folder '/no such': No such file or "
+            "directory\n");
+}
+
 TEST(SynthCommandLine, AnApiOrAMidiInputThatNobodyHasIsAnError) {
   const auto api = run_program({"knotwave-synth", "--audio-api", "jakc", "--duration", "1"});
   EXPECT_EQ(api.exit_code, 1);

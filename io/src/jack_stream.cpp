@@ -159,7 +159,8 @@ void JackStream::connect_midi(const std::vector<std::string>& sources) {
     return std::find(sources.begin(), sources.end(), name) == sources.end();
   });
   // One that went and came back at once has the same name.
-  if (std::exchange(ports_seen_, graph().news().ports_came) != graph().news().ports_came) {
+  const std::int64_t came = graph().news().ports_came;
+  if (std::exchange(ports_seen_, came) != came) {
     joined_.clear();
   }
   std::vector<std::string> fresh;

@@ -22,6 +22,7 @@ using namespace knotwave::bench;
 
 constexpr int kVoices = 64;
 constexpr int kChannels = 16;
+constexpr int kMostVoices = 4096;
 
 struct Options {
   std::string verb;
@@ -40,6 +41,7 @@ engine::BankSpec bank_of(const std::string& patch) {
     std::cerr << bank.error().to_string() << "\n";
     std::exit(EXIT_FAILURE);
   }
+  for (engine::PatchSpec& one : bank->patches) one.polyphony = kMostVoices;
   return *std::move(bank);
 }
 
@@ -231,16 +233,20 @@ void show_bursts(const Options& options) {
 
 // --- voices: how many of them a core holds ---
 
-/// The 99th percentile of blocks in which all of them sound; 0 where they never do.
+/// The 99th percentile of blocks in which all of them sound.
 double us_of(const engine::BankSpec& bank, int voices, int threads, int replays) {
   const Replay heard = replay(bank, held_chord(voices, 150),
                               {.max_voices = voices, .threads = threads, .replays = replays});
   const std::vector<double> us = with_voices(heard, voices);
-  return us.empty() ? 0 : percentile(us, 99);
+  if (us.empty()) {
+    std::cerr << "worst_case: " << voices << " voices never sound at once\n";
+    std::exit(EXIT_FAILURE);
+  }
+  return percentile(us, 99);
 }
 
 int voices_within(const engine::BankSpec& bank, double limit_us, int threads, int replays) {
-  int low = 1, high = 4096;
+  int low = 1, high = kMostVoices;
   while (high - low > std::max(1, low / 100)) {
     const int middle = (low + high) / 2;
     (us_of(bank, middle, threads, replays) <= limit_us ? low : high) = middle;

@@ -146,12 +146,24 @@ void Lfo::place_each(const LfoSpec& spec, const curves::CurveProgram& cycle, std
   }
 }
 
+/// Levels of a chunk that runs evenly from `position` on.
+void Lfo::draw_each(Position position, Chunk& chunk) KNOTWAVE_RT {
+  draw_levels(position.cycle);
+  for (std::size_t i = 0; i < chunk.n; ++i) {
+    chunk.from[i] = level_from_;
+    chunk.step[i] = level_to_ - level_from_;
+    const Position next = sum(position, {0, increment_});
+    if (next.cycle != position.cycle && i + 1 < chunk.n) draw_levels(next.cycle);
+    position = next;
+  }
+}
+
 void Lfo::render(const LfoSpec& spec, const curves::CurveProgram& cycle, std::int64_t first,
                  std::span<const double> rate_factor, std::span<const double> tempo_beats,
                  std::span<const double* const> controls, std::span<double> out) KNOTWAVE_RT {
   if (!(spec.beats > 0)) tempo_beats = {};
-  const bool is_even = rate_factor.empty() && tempo_beats.empty() && !spec.random &&
-                       spec.mode != LfoSpec::Mode::one_shot;
+  const bool is_even =
+      rate_factor.empty() && tempo_beats.empty() && spec.mode != LfoSpec::Mode::one_shot;
   Chunk chunk;
   for (std::size_t done = 0; done < out.size(); done += kChunk) {
     const auto part = out.subspan(done, std::min(kChunk, out.size() - done));
@@ -159,8 +171,9 @@ void Lfo::render(const LfoSpec& spec, const curves::CurveProgram& cycle, std::in
     chunk.n = part.size();
     const auto u = std::span(chunk.u).first(part.size());
     if (is_even && here >= base::first_sample(phase_start_)) {
-      const base::Phase phase{sum(at_sample(here), extra_).phase};
-      phase_ramp(phase, {increment_}, cycle.u_min(), cycle.u_max() - cycle.u_min(), u);
+      const Position position = sum(at_sample(here), extra_);
+      phase_ramp({position.phase}, {increment_}, cycle.u_min(), cycle.u_max() - cycle.u_min(), u);
+      if (spec.random) draw_each(position, chunk);
     } else {
       if (!rate_factor.empty()) chunk.rate_factor = rate_factor.subspan(done, part.size());
       if (!tempo_beats.empty()) chunk.tempo_beats = tempo_beats.subspan(done, part.size());

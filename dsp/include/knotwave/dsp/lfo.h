@@ -63,6 +63,7 @@ class Lfo {
   struct Chunk;
   void place_each(const LfoSpec& spec, const curves::CurveProgram& cycle, std::int64_t first,
                   Chunk& chunk) KNOTWAVE_RT;
+  void draw_each(Position position, Chunk& chunk) KNOTWAVE_RT;
   Position at_sample(std::int64_t sample) const KNOTWAVE_RT;
   Position at_beats(const LfoSpec& spec, std::int64_t sample, double beats) KNOTWAVE_RT;
   Position in_time(const LfoSpec& spec, std::int64_t sample, double factor,

@@ -85,11 +85,12 @@ class WaveTables {
   /// Increments above half a cycle count as negative. [audio] O(1), integer.
   int level_for(base::Phase increment) const KNOTWAVE_RT;
 
-  /// Weights of the rows at position v in 0..1 (clamped, NaN = 0): `count` rows from `first`.
+  /// Weights of the rows at position v in 0..1 (clamped, NaN = 0): `count` rows from `first`. Not
+  /// set where it is made: an oscillator has one a sample, mostly unused.
   struct RowBlend {
-    int first = 0;
-    int count = 1;
-    float weight[kMaxBlended] = {1, 0, 0, 0, 0, 0, 0, 0};
+    int first;
+    int count;
+    float weight[kMaxBlended];
   };
   RowBlend blend_at(double position) const KNOTWAVE_RT;
 

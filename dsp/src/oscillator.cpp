@@ -144,8 +144,7 @@ void TableOscillator::render(const WaveTables& tables, std::span<const base::Pha
   KNOTWAVE_ASSERT(phase_offset.empty() || phase_offset.size() >= count);
   KNOTWAVE_ASSERT(out_right.empty() || out_right.size() == count);
   std::array<base::Phase, kChunk> phases;
-  std::array<WaveTables::RowBlend, kChunk> blends;
-  blends[0] = tables.blend_at(0);
+  WaveTables::RowBlend rest = tables.blend_at(0);
   const bool moves = tables.rows() > 1 && !positions.empty();
   for (std::size_t begin = 0; begin < count;) {
     const std::size_t most = std::min(kChunk, count - begin);
@@ -166,19 +165,20 @@ void TableOscillator::render(const WaveTables& tables, std::span<const base::Pha
         phases[i] = phases[i] + offset_phase(phase_offset[begin + i]);
       }
     }
-    bool varies = false;
-    if (moves) {
-      const auto chunk_positions = positions.subspan(begin, steady);
-      const float rest = chunk_positions[0];
-      varies = std::any_of(chunk_positions.begin(), chunk_positions.end(),
-                           [rest](float position) { return position != rest; });
-      for (std::size_t i = 0; i < (varies ? steady : 1); ++i) {
-        blends[i] = tables.blend_at(double(chunk_positions[i]));
-      }
+    const auto render_with = [&](const WaveTables::RowBlend* blends, std::size_t step) {
+      render_chunk(tables,
+                   {std::span(phases).first(steady), blends, step, out_left.subspan(begin, steady),
+                    out_right.empty() ? out_right : out_right.subspan(begin, steady)});
+    };
+    const auto here = moves ? positions.subspan(begin, steady) : positions.first(0);
+    if (moves) rest = tables.blend_at(double(here[0]));
+    if (std::all_of(here.begin(), here.end(), [&](float place) { return place == here[0]; })) {
+      render_with(&rest, 0);
+    } else {  // only here, as it costs something to clear them
+      std::array<WaveTables::RowBlend, kChunk> blends;
+      for (std::size_t i = 0; i < steady; ++i) blends[i] = tables.blend_at(double(here[i]));
+      render_with(blends.data(), 1);
     }
-    render_chunk(tables, {std::span(phases).first(steady), blends.data(), varies ? 1U : 0U,
-                          out_left.subspan(begin, steady),
-                          out_right.empty() ? out_right : out_right.subspan(begin, steady)});
     if (fade_left_ > 0) {
       fade_left_ -= static_cast<int>(steady);
       if (fade_left_ == 0) level_ = next_level_;

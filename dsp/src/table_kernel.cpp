@@ -180,7 +180,7 @@ void row(const TableRow& table, std::span<const base::Phase> phases, float* out)
     many(at, taps, out + i);
   }
 #endif
-  const WaveTables::RowBlend alone{0, 1, {1}};
+  const WaveTables::RowBlend alone;
   for (; i < phases.size(); ++i) out[i] = one(table, alone, phases[i]);
 }
 

@@ -63,7 +63,9 @@ WaveTables::RowBlend WaveTables::blend_at(double position) const KNOTWAVE_RT {
     left -= half;
   }
   const BlendPiece& piece = blends_[found];
-  RowBlend blend{piece.first, piece.count, {}};
+  RowBlend blend;
+  blend.first = piece.first;
+  blend.count = piece.count;
   const double t = (position - blend_starts_[found]) * piece.inverse_width;
   if (piece.count <= 4) {
     weights_at<4>(piece.power, piece.degree, t, blend.weight);

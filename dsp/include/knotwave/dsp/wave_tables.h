@@ -85,12 +85,11 @@ class WaveTables {
   /// Increments above half a cycle count as negative. [audio] O(1), integer.
   int level_for(base::Phase increment) const KNOTWAVE_RT;
 
-  /// Weights of the rows at position v in 0..1 (clamped, NaN = 0): `count` rows from `first`. Not
-  /// set where it is made: an oscillator has one a sample, mostly unused.
+  /// Weights of the rows at position v in 0..1 (clamped, NaN = 0): `count` rows from `first`.
   struct RowBlend {
-    int first;
-    int count;
-    float weight[kMaxBlended];
+    int first = 0;
+    int count = 1;
+    float weight[kMaxBlended] = {1, 0, 0, 0, 0, 0, 0, 0};
   };
   RowBlend blend_at(double position) const KNOTWAVE_RT;
 

@@ -200,6 +200,24 @@ std::vector<TimedPart> whole_part(SpanPolynomial span) {
   return parts;
 }
 
+/// Adds the pieces of a span, but where no double is in it. False when max_pieces are not enough.
+bool invert(const NurbsCurve& curve, SpanPolynomial span, bool is_last, const FitLimits& limits,
+            FittedPieces& pieces) {
+  const bool is_line = is_affine(span);
+  const std::vector<TimedPart> timed =
+      is_line ? whole_part(std::move(span)) : timed_parts(curve, std::move(span), limits);
+  const double x_a =
+      pieces.breaks.empty() ? start_of(curve, timed.front(), limits, pieces) : pieces.breaks.back();
+  const double x_b = end_of(curve, timed.back(), is_last, limits, pieces);
+  if (!(x_b > x_a)) return true;
+  if (!is_line) return fit_span(timed, x_a, x_b, limits, pieces);
+  const SpanPolynomial& line = timed.front().span.of;
+  const std::vector<double> piece = affine_piece(line);
+  pieces.add(x_a, x_b, piece);
+  pieces.note_error(affine_error(line, x_a, x_b, piece), x_a);
+  return pieces.count() <= limits.max_pieces;
+}
+
 /// error_bound_missed, with the place.
 Error missed_at(const NurbsCurve& curve, const FittedPieces& pieces,
                 const CompileOptions& options) {
@@ -229,27 +247,12 @@ Result<ProgramParts> inverted_parts(const NurbsCurve& curve, const CompileOption
   parts.end_values = values_at(spans.back(), 1.0);
   for (SpanPolynomial& span : spans) {
     if (stands_still(span)) continue;  // y jumps
+    const bool is_first = pieces.breaks.empty(), is_last = &span == &spans.back();
     std::vector<double> start_values = values_at(span, 0.0);
-    const bool is_last = &span == &spans.back(), is_line = is_affine(span);
-    const std::vector<TimedPart> timed =
-        is_line ? whole_part(std::move(span)) : timed_parts(curve, std::move(span), limits);
-    const double x_a = pieces.breaks.empty() ? start_of(curve, timed.front(), limits, pieces)
-                                             : pieces.breaks.back();
-    const double x_b = end_of(curve, timed.back(), is_last, limits, pieces);
-    if (!(x_b > x_a)) continue;
-    if (pieces.breaks.empty()) parts.start_values = std::move(start_values);
-    bool enough = true;
-    if (is_line) {
-      const SpanPolynomial& line = timed.front().span.of;
-      const std::vector<double> piece = affine_piece(line);
-      pieces.add(x_a, x_b, piece);
-      pieces.note_error(affine_error(line, x_a, x_b, piece), x_a);
-    } else {
-      enough = fit_span(timed, x_a, x_b, limits, pieces);
-    }
-    if (!enough || pieces.count() > options.max_pieces) {
+    if (!invert(curve, std::move(span), is_last, limits, pieces)) {
       return too_many_pieces(curve, options);
     }
+    if (is_first && !pieces.breaks.empty()) parts.start_values = std::move(start_values);
   }
   if (pieces.count() == 0) {
     return fail(ErrorCode::empty_domain, "curve '" + curve.name() + "': time never moves on");

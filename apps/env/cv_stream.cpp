@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "cv_stream.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "knotwave/base/document.h"
+#include "knotwave/base/file.h"
+
+namespace knotwave::env {
+
+Result<std::vector<engine::VoltageChannel>> read_calibration(const EnvOptions& options) {
+  if (options.calibration.empty()) return std::vector<engine::VoltageChannel>();
+  const auto text = base::read_file(options.calibration, base::kMaxDocumentBytes);
+  if (!text) return text.error();
+  return engine::parse_calibration(*text, options.calibration);
+}
+
+Result<std::unique_ptr<CvStream>> CvStream::open(const EnvOptions& options, const EnvInput& input) {
+  engine::VoltageConfig voltage;
+  voltage.direct_current = options.direct_current;
+  auto channels = read_calibration(options);
+  if (!channels) return channels.error();
+  voltage.channels = std::move(*channels);
+  // The rate is the device's, which only an open stream knows; until the players are there it
+  // plays silence.
+  std::unique_ptr<CvStream> cv(new CvStream);
+  auto probe = CvPlayer::create(voltage, options.seed, input.voltage_patches());
+  if (!probe) return probe.error();
+  io::AudioConfig audio;
+  audio.api = options.audio_api;
+  audio.device = options.audio_device;
+  audio.client_name = "Knotwave-env";
+  audio.channels.resize(probe->channels());
+  std::iota(audio.channels.begin(), audio.channels.end(), 1);
+  auto stream = io::AudioStream::open(audio, *cv);
+  if (!stream) return stream.error();
+  cv->rate_hz_ = voltage.rate_hz = (*stream)->format().rate_hz;
+  auto player = CvPlayer::create(voltage, options.seed, input.voltage_patches());
+  if (!player) return player.error();
+  cv->player_ = std::make_unique<CvPlayer>(std::move(*player));
+  for (engine::MidiClock& clock : cv->clocks_) clock.reset(cv->rate_hz_);
+  cv->stream_ = std::move(*stream);
+  if (const auto started = cv->stream_->start(); !started) return started.error();
+  return cv;
+}
+
+CvStream::~CvStream() { stream_.reset(); }
+
+void CvStream::heard(const base::MidiEvent& event, std::int64_t time_ns) noexcept {
+  if (event.bytes[0] != 0xF0) ring_.push({event, time_ns});
+}
+
+/// Clocks become tempo; everything is told at the sample that is played next.
+void CvStream::handle(const Heard& heard) KNOTWAVE_RT {
+  engine::Event event;
+  event.midi = heard.event;
+  event.midi.time = {player_->now(), 0};
+  engine::MidiClock& clock = clocks_[heard.event.port % clocks_.size()];
+  const std::uint8_t status = heard.event.bytes[0];
+  if ((status == 0xF8 || status == 0xF2 || (status >= 0xFA && status <= 0xFC)) &&
+      clock.handle(event.midi)) {
+    engine::Event tempo = clock.tempo_event();
+    tempo.midi.time = event.midi.time;
+    player_->handle(tempo);
+  }
+  player_->handle(event);
+}
+
+void CvStream::play_until(std::size_t end, const io::AudioBlock& block) KNOTWAVE_RT {
+  while (at_ < end) {
+    const std::size_t n = std::min(end - at_, CvPlayer::kMostSamples);
+    for (std::size_t c = 0; c < player_->channels(); ++c) out_[c] = block.outputs[c] + at_;
+    player_->render(n, std::span<float* const>(out_.data(), player_->channels()));
+    at_ += n;
+  }
+}
+
+// What is heard at a time sounds one block and what the planner takes later, always.
+void CvStream::process(const io::AudioBlock& block) KNOTWAVE_RT {
+  const auto frames = static_cast<std::size_t>(block.frames);
+  at_ = 0;
+  if (must_ramp_out_.load(std::memory_order_relaxed) && !is_ramping_) {
+    player_->ramp_out();
+    is_ramping_ = true;
+  }
+  const double frame_ns = 1e9 / rate_hz_;
+  const auto length_ns = static_cast<std::int64_t>(block.frames * frame_ns);
+  for (std::size_t i = 0; i < kMostHeard; ++i) {
+    if (!has_front_ && !(has_front_ = ring_.pop(front_))) break;
+    const std::int64_t after_ns = front_.time_ns + length_ns + kPlannerNs - block.time_ns;
+    if (after_ns >= length_ns) break;  // of a later block
+    const double at = static_cast<double>(std::max<std::int64_t>(after_ns, 0)) / frame_ns;
+    play_until(std::min(static_cast<std::size_t>(at), frames), block);
+    handle(front_);
+    has_front_ = false;
+  }
+  play_until(frames, block);
+  if (is_ramping_ && player_->is_silent()) is_silent_.store(true, std::memory_order_relaxed);
+}
+
+std::string CvStream::device_text() const {
+  const io::AudioFormat& format = stream_->format();
+  return format.api + " '" + format.device + "', " + base::number_text(format.rate_hz) +
+         " Hz, channels 1 to " + std::to_string(format.channels);
+}
+
+std::string CvStream::fault() {
+  const io::AudioStatus status = stream_->status();
+  return status.state == io::AudioStatus::State::lost ? status.reason : std::string();
+}
+
+}  // namespace knotwave::env

@@ -29,7 +29,7 @@ Result<CvPlayer> CvPlayer::create(
     }
   }
   for (std::size_t c = 0; c < channels; ++c) {
-    auto output = engine::VoltageOutput::create(config, static_cast<int>(c));
+    auto output = engine::VoltageOutput::create(config, static_cast<int>(c) + 1);
     if (!output) return output.error();
     cv.outputs_.push_back(std::move(*output));
   }

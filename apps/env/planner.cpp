@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::int64_t kStepNs = 500'000;
 constexpr std::int64_t kShowNs = 250'000'000;
-constexpr int kPriority = 15;  // below the sender's
+constexpr std::size_t kMostKept = 1 << 20;  // 5 minutes of a MIDI cable
+constexpr int kPriority = 15;               // below the sender's
 
 // 6 samples of 48 kHz are 125 us.
 constexpr std::int64_t kPeriodNs = 125'000, kPeriodSamples = 6;
@@ -57,6 +58,7 @@ Planner::Planner(const Config& config, engine::EnvelopeGenerator& generator, io:
       osc_(osc),
       listener_(listener),
       names_(std::move(names)),
+      kept_(kMostKept),
       begin_ns_(io::steady_clock_ns()) {}
 
 Planner::~Planner() {
@@ -133,11 +135,21 @@ void Planner::take_inputs(std::int64_t now_ns) {
     event.time = sample_time(first_ns, begin_ns_);
     // What was stamped before the step that should have heard it is heard now.
     event.time = std::max(event.time, base::SampleTime{generator_.now(), 0});
+    if (event.sysex != nullptr) keep_sysex(event);
     generator_.advance(event.time.sample, *this);
     generator_.handle(event);
     if (listener_ != nullptr) listener_->heard(event, first_ns);
     first->queue.drop_front();
   }
+}
+
+/// The generator refers to it until it is sent.
+void Planner::keep_sysex(base::MidiEvent& event) {
+  if (kept_end_ + event.sysex_size > kept_.size()) kept_end_ = 0;
+  std::uint8_t* const to = kept_.data() + kept_end_;
+  std::copy_n(event.sysex, event.sysex_size, to);
+  event.sysex = to;
+  kept_end_ += event.sysex_size;
 }
 
 void Planner::show(const Shown& shown) noexcept {

@@ -74,6 +74,7 @@ class Planner final : public io::MidiListener, private engine::GeneratorSink {
 
   void run();
   void take_inputs(std::int64_t now_ns);
+  void keep_sysex(base::MidiEvent& event);
   void step(std::int64_t now_ns);
   void show(const Shown& shown) noexcept;
   void flush_osc() noexcept;
@@ -88,6 +89,9 @@ class Planner final : public io::MidiListener, private engine::GeneratorSink {
   const SentNames names_;
 
   std::array<Input, io::kMaxMidiPorts> inputs_;
+  std::vector<std::uint8_t>
+      kept_;  ///< system exclusive that the generator refers to, round and round
+  std::size_t kept_end_ = 0;
   std::atomic<std::int64_t> dropped_in_{0};
   std::int64_t begin_ns_ = 0;
   std::array<io::OscNumber, 64> bundle_;

@@ -15,6 +15,8 @@ using base::MidiStatus;
 using engine::OutputKind;
 using Points = std::vector<std::pair<double, double>>;
 
+constexpr double kPairSeconds = 0.003;  // halves this near to one another are one value
+
 double seconds_of(base::SampleTime time) {
   return (static_cast<double>(time.sample) + static_cast<double>(time.fraction) * 0x1p-32) /
          kClockHz;
@@ -45,6 +47,8 @@ class Receiver {
     }
   }
   double value() const { return value_; }
+  /// The message was a lower half, so the upper one before it was no value by itself.
+  bool is_second() const { return is_second_; }
 
  private:
   bool hears_control(int number, int value) {
@@ -58,16 +62,23 @@ class Receiver {
     const bool is_low = spec_.bits == 14 && number == spec_.number + 32;
     return (number == spec_.number || is_low) && hears_half(!is_low, value);
   }
+  // An upper half puts the lower one to 0 (MIDI 1.0), until that follows.
   bool hears_half(bool is_high, int value) {
-    (is_high ? high_ : low_) = value;
+    if (is_high) {
+      high_ = value;
+      low_ = 0;
+    } else {
+      low_ = value;
+    }
+    is_second_ = !is_high;
     value_ = spec_.bits == 14 ? high_ << 7 | low_ : high_;
-    // Of two halves the one that comes last makes the value.
-    return is_high || spec_.kind == OutputKind::nrpn;
+    return true;
   }
 
   const engine::OutputSpec& spec_;
   int parameter_ = 16383, high_ = 0, low_ = 0;
   double value_ = 0;
+  bool is_second_ = false;
 };
 
 /// The port that an output of MIDI goes to.
@@ -135,7 +146,12 @@ Points received(std::span<const SentMessage> messages, int port, int patch, int 
     }
     const bool is_channel = spec.channel == 0 || (message.bytes[0] & 15) == spec.channel - 1;
     if (message.port != port || message.bytes[0] >= 0xF0 || !is_channel) continue;
-    if (receiver.hears(message)) points.emplace_back(seconds_of(message.time), receiver.value());
+    if (!receiver.hears(message)) continue;
+    const double time_s = seconds_of(message.time);
+    if (receiver.is_second() && !points.empty() && time_s - points.back().first < kPairSeconds) {
+      points.pop_back();
+    }
+    points.emplace_back(time_s, receiver.value());
   }
   return points;
 }

@@ -18,6 +18,10 @@ std::string channel_text(int channel) {
   return channel == 0 ? "any ch" : "ch" + std::to_string(channel);
 }
 
+std::string name_of(const std::string& name, const std::string& curve) {
+  return name == curve ? name : name + "." + curve;
+}
+
 /// The places it repeats between or holds at, if it does.
 std::string places_text(const dsp::EnvelopeSpec& spec) {
   using base::number_text;
@@ -56,10 +60,10 @@ std::string source_text(const engine::EnvelopePatchSpec& spec, const engine::Out
   const engine::PatchSpec& patch = spec.patch;
   if (output.source == MapSource::envelope && index < patch.envelopes.size()) {
     const engine::EnvelopeUse& envelope = patch.envelopes[index];
-    return envelope.name + "." + envelope.curve + places_text(envelope.spec);
+    return name_of(envelope.name, envelope.curve) + places_text(envelope.spec);
   }
   if (output.source == MapSource::lfo && index < patch.lfos.size()) {
-    return patch.lfos[index].name + "." + patch.lfos[index].curve;
+    return name_of(patch.lfos[index].name, patch.lfos[index].curve);
   }
   if (index < patch.free_numbers.size()) return "free." + patch.free_numbers[index];
   return "?";

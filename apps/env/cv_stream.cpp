@@ -30,7 +30,7 @@ Result<std::unique_ptr<CvStream>> CvStream::open(const EnvOptions& options, cons
   io::AudioConfig audio;
   audio.api = options.audio_api;
   audio.device = options.audio_device;
-  audio.client_name = "Knotwave-env";
+  audio.client_name = "Knotwave-env-cv";
   audio.channels.resize(probe->channels());
   std::iota(audio.channels.begin(), audio.channels.end(), 1);
   auto stream = io::AudioStream::open(audio, *cv);

@@ -72,6 +72,7 @@ Result<DryRun> dry_run(const EnvOptions& options, const EnvInput& input, const i
   }
   run.came_to_rest = generator.is_at_rest();
   run.end = generator.now();
+  run.lost = generator.lost();
   run.sent.sort();
   run.ports = uses_of(generator, run.names, static_cast<double>(run.end) / kClockHz);
   return run;
@@ -83,11 +84,13 @@ std::string dry_run_line(const DryRun& run, const std::string& path) {
                      std::to_string(run.messages_in) + " messages in, " +
                      std::to_string(run.sent.messages().size()) + " out";
   for (const PortUse& port : run.ports) {
+    if (port.messages == 0) continue;
     line += ", " + io::printable(port.name) + " " + std::to_string(port.messages) + " (" +
             fixed(port.bytes_per_second, 0) + " B/s";
     if (port.share > 0) line += ", " + fixed(port.share * 100, 1) + " %";
     line += ")";
   }
+  if (run.lost > 0) line += ", " + std::to_string(run.lost) + " lost for want of room";
   if (!run.came_to_rest) line += ", not at rest after 30 s";
   return line + ", sha256 " + run.sent.sha256();
 }

@@ -22,7 +22,8 @@ struct DryRun {
   SentList sent;
   SentNames names;
   std::int64_t messages_in = 0;
-  std::int64_t end = 0;  ///< samples of the virtual clock
+  std::int64_t lost = 0;  ///< of them, for which the generator had no room
+  std::int64_t end = 0;   ///< samples of the virtual clock
   std::vector<PortUse> ports;
   bool came_to_rest = true;
 };

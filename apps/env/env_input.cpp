@@ -77,9 +77,6 @@ Result<EnvInput> read_input(const EnvOptions& options) {
       if (error.source.empty()) error.source = path;
       return error;
     }
-    for (const std::string& line : (*program)->report()) {
-      input.warnings.push_back(path + ": " + line);
-    }
     input.programs.push_back(std::move(*program));
   }
   return input;
@@ -92,6 +89,7 @@ Result<std::unique_ptr<engine::EnvelopeGenerator>> make_generator(const EnvOptio
   config.seed = options.seed;
   config.thru = options.thru;
   config.bpm = options.bpm;
+  config.lead_s = std::min(config.lead_s, options.latency_ms * 0.5e-3);
   return engine::EnvelopeGenerator::create(config, input.patches());
 }
 

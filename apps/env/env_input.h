@@ -14,7 +14,6 @@ namespace knotwave::env {
 
 struct EnvInput {
   std::vector<std::unique_ptr<const engine::EnvelopePatchProgram>> programs;
-  std::vector<std::string> warnings;
 
   std::vector<const engine::EnvelopePatchProgram*> patches() const;
   bool has_osc() const;

@@ -62,11 +62,6 @@ int run(const EnvOptions& options) {
   if (options.list) return print(kProgram, device_list());
   const auto input = read_input(options);
   if (!input) return say(input.error());
-  if (!options.quiet) {
-    for (const std::string& line : input->warnings) {
-      std::fprintf(stderr, "%s\n", io::printable(line, 400).c_str());
-    }
-  }
   if (options.dry_run.empty()) return play(options, *input);
   const auto lines = run_offline(options, *input);
   return lines ? print(kProgram, *lines) : say(lines.error());

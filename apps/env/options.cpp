@@ -73,7 +73,7 @@ void add_devices(CLI::App& app, EnvOptions& o) {
 
 void add_playing(CLI::App& app, EnvOptions& o) {
   using namespace command_line;
-  add_texts(app, {"PATCH", "envelope patches (.toml)", ""}, o.patches);
+  app.add_option("PATCH", o.patches, "envelope patches (.toml)")->type_name("");
   add_flag(app, {"--thru", "send on all that comes in, merged, to the first port", ""}, o.thru);
   add_number(app,
              {"--latency", "from what comes in to what goes out, in milliseconds", "MILLISECONDS"},

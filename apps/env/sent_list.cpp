@@ -45,12 +45,15 @@ std::vector<std::uint8_t> SentMessage::wire() const {
 }
 
 std::string seconds_text(base::SampleTime time, int rate_hz) {
-  const std::int64_t seconds = time.sample / rate_hz;
-  const auto rest = static_cast<unsigned __int128>(time.sample % rate_hz) << 32 | time.fraction;
-  const auto ns = static_cast<std::int64_t>(rest * static_cast<unsigned __int128>(kNanoseconds) /
+  // In 2^-32 samples; what goes out before the first event that causes it is below 0.
+  const __int128 moment =
+      static_cast<__int128>(time.sample) * (std::int64_t{1} << 32) + time.fraction;
+  const bool is_negative = moment < 0;
+  const auto size = static_cast<unsigned __int128>(is_negative ? -moment : moment);
+  const auto ns = static_cast<std::int64_t>(size * kNanoseconds /
                                             (static_cast<unsigned __int128>(rate_hz) << 32));
-  const std::string digits = std::to_string(kNanoseconds + ns).substr(1);
-  return std::to_string(seconds) + "." + digits;
+  const std::string digits = std::to_string(kNanoseconds + ns % kNanoseconds).substr(1);
+  return (is_negative ? "-" : "") + std::to_string(ns / kNanoseconds) + "." + digits;
 }
 
 void SentList::midi(int port, const base::MidiEvent& event) KNOTWAVE_RT {

@@ -22,7 +22,7 @@ struct SentMessage {
   std::vector<std::uint8_t> wire() const;  ///< as it goes through a cable; OSC: nothing
 };
 
-/// Time as text, in seconds with 9 digits, rounded down: "0.500000000".
+/// Time as text, in seconds with 9 digits, rounded towards 0: "0.500000000".
 std::string seconds_text(base::SampleTime time, int rate_hz);
 
 class SentList final : public engine::GeneratorSink {

@@ -37,6 +37,8 @@ class JackMidiGraph {
   Result<void> enter(const MidiOutputConfig& config);
 
   MidiQueue& queue() noexcept { return queue_; }
+  /// The cycle of the last message is over, so whoever is connected has it.
+  bool is_done() const noexcept { return queue_.is_empty() && has_rested_; }
   bool is_alive() const noexcept { return !has_gone_ && !JackTicket::has_server_gone(); }
   /// What its messages go to, or our own port. Valid after enter().
   const std::string& name() const noexcept { return name_; }
@@ -58,6 +60,7 @@ class JackMidiGraph {
   jack_port_t* port_ = nullptr;
   std::string name_, own_name_;
   std::atomic<bool> has_gone_{false};
+  std::atomic<bool> has_rested_{true};  ///< the last cycle began with nothing to send
   JackClient client_;  ///< the last member: closed before what its callbacks use goes
 };
 
@@ -111,6 +114,7 @@ Result<void> JackMidiGraph::connect(const MidiOutputConfig& config) {
 int JackMidiGraph::process(jack_nframes_t frames) KNOTWAVE_RT {
   void* const buffer = jack_port_get_buffer(port_, frames);
   jack_midi_clear_buffer(buffer);
+  has_rested_ = queue_.is_empty();
   follow_cycle(client_.get(), frames, clock_);
   placement_.advance(clock_.frame(), clock_.time_ns(), frames);
   while (const MidiQueue::Message* message = queue_.front()) {
@@ -184,7 +188,7 @@ class JackMidiOutput : public MidiOutput {
   bool send_at(const base::MidiEvent& event, std::int64_t due_ns) KNOTWAVE_RT override {
     return graph_->queue().push(event, due_ns);
   }
-  bool is_done() const noexcept override { return graph_->queue().is_empty(); }
+  bool is_done() const noexcept override { return graph_->is_done(); }
   bool exists() override { return graph_->is_alive() && graph_->has(name_); }
   const std::string& api() const override { return api_; }
   const std::string& name() const override { return name_; }

@@ -98,6 +98,13 @@ TEST(EnvSentFiles, AMidiFileHasEveryMessageAtItsSample) {
   EXPECT_THAT(song->sysex_bytes, ElementsAre(0x7E, 0x7F, 9, 1));
 }
 
+TEST(EnvSentFiles, TimesHaveNineDigitsAndASign) {
+  EXPECT_EQ(seconds_text({0, 0}, kClockHz), "0.000000000");
+  EXPECT_EQ(seconds_text({-48, 0}, kClockHz), "-0.001000000");
+  EXPECT_EQ(seconds_text({-1, 0x80000000}, kClockHz), "-0.000010416");
+  EXPECT_EQ(seconds_text({48000 * std::int64_t{86400} + 1, 0}, kClockHz), "86400.000020833");
+}
+
 TEST(EnvSentFiles, ATimeBetweenSamplesGoesToTheNearest) {
   SentList sent;
   base::MidiEvent event = midi(7, 0xB0, 1, 2);

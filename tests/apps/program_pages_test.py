@@ -34,6 +34,8 @@ CASES = {
     "knotwave-render bell.toml no": {"notes.MID"},
     "knotwave-render --rate ": set(),
     "knotwave-synth be": {"bell.toml"},
+    "knotwave-env be": {"bell.toml"},
+    "knotwave-env --cali": {"--calibration"},
     "knotwave-synth --midi-l": {"--midi-learn"},
     "knotwave-curve ev": {"eval"},
     "knotwave-curve in": {"info", "insert-knot"},

@@ -38,7 +38,7 @@ struct MidiSenderPort {
 class MidiSender {
  public:
   /// How long before it is due a message must be pushed to be in time: the thread wakes so often.
-  static constexpr std::int64_t kWakeNs = 500'000;
+  static constexpr std::int64_t kWakeNs = 250'000;
 
   /// Errors: those of MidiOutput::open() for the first port that fails, io_failed (no thread).
   static Result<std::unique_ptr<MidiSender>> open(MidiSenderConfig config);

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// knotwave-env as a user runs it, without devices: dry runs, and what is refused.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "knotwave/io/midi_file.h"
+#include "knotwave/io/sound_file.h"
+
+#include "support/program.h"
+
+namespace knotwave::env {
+namespace {
+
+using support::ProgramRun;
+using support::run_program;
+using support::ScratchFolder;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string kExamples = std::string(KNOTWAVE_SOURCE_DIR) + "/examples/";
+
+std::string envelope(const std::string& name) { return kExamples + "envelopes/" + name + ".toml"; }
+std::string score(const std::string& name) { return kExamples + "scores/" + name + ".mid"; }
+
+ProgramRun env_program(std::vector<std::string> words) {
+  words.insert(words.begin(), "knotwave-env");
+  return run_program(words);
+}
+
+std::string content(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string hash_in(const std::string& line) {
+  const std::size_t at = line.rfind("sha256 ");
+  return at == std::string::npos ? "" : line.substr(at + 7, 64);
+}
+
+/// Bytes of every note. A note on of velocity 0 stays one.
+std::multiset<std::vector<std::int64_t>> notes_of(const io::Song& song) {
+  std::multiset<std::vector<std::int64_t>> notes;
+  for (const io::SongEvent& event : song.events) {
+    if ((event.bytes[0] & 0xE0) != 0x80) continue;
+    notes.insert({event.bytes[0], event.bytes[1], event.bytes[2]});
+  }
+  return notes;
+}
+
+TEST(EnvProgram, ADryRunIsTheSameEveryTime) {
+  const ScratchFolder folder;
+  std::vector<std::string> hashes, files;
+  for (const char* name : {"a.mid", "b.mid"}) {
+    const ProgramRun run = env_program(
+        {envelope("filter-swell"), "--dry-run", score("pachelbel_canon"), "-o", folder.file(name)});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr(" messages in, "));
+    EXPECT_THAT(run.out, HasSubstr("synth "));
+    hashes.push_back(hash_in(run.out));
+    files.push_back(content(folder.file(name)));
+  }
+  EXPECT_EQ(hashes[0].size(), 64u);
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_EQ(files[0], files[1]);
+}
+
+TEST(EnvProgram, NotesGoThroughUnalteredAndTheLastValueIsTheRest) {
+  const ScratchFolder folder;
+  const ProgramRun run = env_program(
+      {envelope("filter-swell"), "--dry-run", score("first-light"), "-o", folder.file("sent.mid")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto sent = io::read_midi_file(folder.file("sent.mid"));
+  const auto played = io::read_midi_file(score("first-light"));
+  ASSERT_TRUE(sent.has_value()) << sent.error().to_string();
+  ASSERT_TRUE(played.has_value());
+  EXPECT_EQ(sent->warnings.size(), 0u);
+  EXPECT_EQ(notes_of(*sent), notes_of(*played));
+  int last = -1, most = 0;
+  for (const io::SongEvent& event : sent->events) {
+    if ((event.bytes[0] & 0xF0) != 0xB0 || event.bytes[1] != 74) continue;
+    last = event.bytes[2];
+    most = std::max(most, last);
+  }
+  EXPECT_EQ(last, 64);
+  EXPECT_GT(most, 64);
+}
+
+TEST(EnvProgram, ATableAndAPictureShowTheSame) {
+  const ScratchFolder folder;
+  const ProgramRun run =
+      env_program({envelope("filter-swell"), "--dry-run", score("first-light"), "-o",
+                   folder.file("sent.csv"), "--plot", folder.file("sent.svg")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string table = content(folder.file("sent.csv"));
+  EXPECT_THAT(table, StartsWith("time_s,port,message,channel,number,value,hex\n"));
+  EXPECT_THAT(table, HasSubstr(",synth,control,1,74,"));
+  const std::string picture = content(folder.file("sent.svg"));
+  EXPECT_THAT(picture, HasSubstr("<svg"));
+  EXPECT_THAT(picture, HasSubstr("CC74"));
+}
+
+TEST(EnvProgram, VoltagesGoIntoASoundFile) {
+  const ScratchFolder folder;
+  const ProgramRun run = env_program({envelope("four-voltages"), "--cv", "--dry-run",
+                                      score("first-light"), "-o", folder.file("volts.wav")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("5 channels"));
+  const auto sound = io::read_sound(folder.file("volts.wav"));
+  ASSERT_TRUE(sound.has_value()) << sound.error().to_string();
+  ASSERT_EQ(sound->channels, 5);
+  EXPECT_EQ(sound->rate_hz, 48000);
+  for (std::size_t c = 0; c < 5; ++c) {
+    float most = 0;
+    for (std::size_t i = c; i < sound->samples.size(); i += 5) {
+      most = std::max(most, std::abs(sound->samples[i]));
+    }
+    EXPECT_GT(most, 0.01F) << "channel " << c + 1;
+    EXPECT_EQ(sound->samples[sound->samples.size() - 5 + c], 0) << "channel " << c + 1;
+  }
+  const ProgramRun none = env_program(
+      {envelope("filter-swell"), "--dry-run", score("first-light"), "-o", folder.file("none.wav")});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("no patch has an output to = \"cv\""));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("none.wav")));
+}
+
+TEST(EnvProgram, EveryShippedPatchPlays) {
+  for (const auto& entry : std::filesystem::directory_iterator(kExamples + "envelopes")) {
+    if (entry.path().extension() != ".toml") continue;
+    const ProgramRun run = env_program({entry.path(), "--dry-run", score("first-light")});
+    EXPECT_EQ(run.exit_code, 0) << entry.path() << ": " << run.err;
+    EXPECT_EQ(hash_in(run.out).size(), 64u);
+    EXPECT_THAT(run.out, Not(HasSubstr("not at rest")));
+  }
+}
+
+TEST(EnvProgram, OptionsChooseTheControllerAndTheChannel) {
+  const ScratchFolder folder;
+  const ProgramRun run =
+      env_program({envelope("filter-swell"), "--cc", "11", "--channel", "5", "--dry-run",
+                   score("first-light"), "-o", folder.file("sent.csv")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(content(folder.file("sent.csv")), HasSubstr(",control,5,11,"));
+  EXPECT_THAT(content(folder.file("sent.csv")), Not(HasSubstr(",control,1,74,")));
+}
+
+TEST(EnvProgram, WhatMakesNoSenseIsUsage) {
+  const std::string patch = envelope("filter-swell"), song = score("first-light");
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{}, "there is no PATCH to play"},
+      {{patch, "-o", "x.mid"}, "--output is for --dry-run"},
+      {{patch, "--plot", "x.svg"}, "--plot is for --dry-run"},
+      {{patch, "--dry-run", song, "-o", "x.txt"}, "ends neither in .mid nor in .csv nor in .wav"},
+      {{patch, "--dry-run", song, "--plot", "x.png"}, "does not end in .svg"},
+      {{song}, "is named as a MIDI file"},
+      {{patch, "--dry-run", song, "-o", song}, "--output"},
+      {{patch, "--cc", "120"}, "--cc: '120' is not a whole number from 0 to 119"},
+      {{patch, "--chanel", "3"}, "--channel"},
+      {{patch, "--osc", "nowhere"}, "neither a port from 1 to 65535 nor HOST:PORT"},
+  };
+  for (const auto& [words, message] : cases) {
+    const ProgramRun run = env_program(words);
+    EXPECT_EQ(run.exit_code, 2) << message;
+    EXPECT_THAT(run.err, HasSubstr(message));
+  }
+}
+
+TEST(EnvProgram, FaultsOfFilesAreToldWithTheirPlace) {
+  const ScratchFolder folder;
+  std::ofstream(folder.file("broken.toml")) << "format = 1\nkind = \"envelope\"\nnane = \"x\"\n";
+  const ProgramRun broken =
+      env_program({folder.file("broken.toml"), "--dry-run", score("first-light")});
+  EXPECT_EQ(broken.exit_code, 1);
+  EXPECT_THAT(broken.err, HasSubstr("broken.toml:"));
+  const ProgramRun missing =
+      env_program({envelope("filter-swell"), "--dry-run", folder.file("none.mid")});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("none.mid"));
+}
+
+}  // namespace
+}  // namespace knotwave::env

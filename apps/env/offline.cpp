@@ -136,7 +136,7 @@ Result<std::string> write_voltages(const EnvOptions& options, const EnvInput& in
       base::first_sample(io::TickClock(song, kClockHz).at(song.length_ticks)) + tail;
   file->play_until(end);
   file->player().ramp_out();
-  file->play_until(end + static_cast<std::int64_t>(kRampSeconds * kClockHz));
+  file->play_until(end + static_cast<std::int64_t>(kRampSeconds * kClockHz) + 1);
   auto hash = file->finish();
   if (!hash) return hash.error();
   const auto seconds = static_cast<double>(file->player().now()) / kClockHz;

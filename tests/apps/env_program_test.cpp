@@ -106,24 +106,41 @@ TEST(EnvProgram, ATableAndAPictureShowTheSame) {
   EXPECT_THAT(picture, HasSubstr("CC74"));
 }
 
+/// One key held for 10 s.
+void write_long_note(const std::string& path) {
+  io::Song song;
+  song.track_count = 1;
+  song.events.push_back({0, 0, {0x90, 72, 100}});
+  song.events.push_back({9600, 0, {0x80, 72, 0}});
+  song.length_ticks = 9600;
+  const auto bytes = io::write_midi(song);
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+}
+
 TEST(EnvProgram, VoltagesGoIntoASoundFile) {
   const ScratchFolder folder;
+  write_long_note(folder.file("long.mid"));
   const ProgramRun run = env_program({envelope("four-voltages"), "--cv", "--dry-run",
-                                      score("first-light"), "-o", folder.file("volts.wav")});
+                                      folder.file("long.mid"), "-o", folder.file("volts.wav")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("5 channels"));
   const auto sound = io::read_sound(folder.file("volts.wav"));
   ASSERT_TRUE(sound.has_value()) << sound.error().to_string();
   ASSERT_EQ(sound->channels, 5);
   EXPECT_EQ(sound->rate_hz, 48000);
+  std::int64_t triggered = 0;
   for (std::size_t c = 0; c < 5; ++c) {
     float most = 0;
     for (std::size_t i = c; i < sound->samples.size(); i += 5) {
       most = std::max(most, std::abs(sound->samples[i]));
+      triggered += c == 4 && sound->samples[i] != 0;
     }
     EXPECT_GT(most, 0.01F) << "channel " << c + 1;
     EXPECT_EQ(sound->samples[sound->samples.size() - 5 + c], 0) << "channel " << c + 1;
   }
+  EXPECT_EQ(triggered, 5 * 240);  // a loop of 4 beats comes round every 2 s; 5 ms each
   const ProgramRun none = env_program(
       {envelope("filter-swell"), "--dry-run", score("first-light"), "-o", folder.file("none.wav")});
   EXPECT_EQ(none.exit_code, 1);

@@ -70,7 +70,7 @@ class EnvProcess {
 };
 
 /// Samples of the virtual clock at which a generator sends what, the patch played by one note.
-class Computed : public engine::GeneratorSink {
+class Computed final : public engine::GeneratorSink {
  public:
   struct Message {
     double sample = 0;

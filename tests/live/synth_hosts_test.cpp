@@ -19,7 +19,7 @@ using support::BackgroundProgram;
 using support::expect_program;
 using support::SetVariable;
 
-constexpr double kTellsSeconds = 1.2, kSoundsAgainSeconds = 3.0, kEndsSeconds = 1.0;
+constexpr double kTellsSeconds = 1.2, kSoundsAgainSeconds = 3.0, kEndsSeconds = 2.0;
 
 class SynthHosts : public SynthProgram {
  protected:

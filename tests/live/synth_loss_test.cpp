@@ -16,7 +16,7 @@ namespace {
 
 using io::seconds_taken;
 
-constexpr double kTellsSeconds = 1.0, kSoundsAgainSeconds = 3.0, kEndsSeconds = 1.0;
+constexpr double kTellsSeconds = 1.0, kSoundsAgainSeconds = 3.0, kEndsSeconds = 2.0;
 /// A server that only stands still is known by 0.8 s without a block, and a line comes with a tick.
 constexpr double kTellsOfSilenceSeconds = 1.2;
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exact_span.h"
+#include "next_double.h"
 #include "piece_proof.h"
 
 namespace knotwave::curves {
@@ -101,8 +102,17 @@ class Certainty {
   bool is_sure(double t) const {
     if (t == 0 && timed_.of.is_whole) return true;  // power 0 is the first point
     TimeProof proof(timed_, limits_);
+    SpanClock clock(timed_);
     const double x = time_at(t), enough = kEnough * limits_.max_error;
     if (proof.change_between(x - room(x), x + room(x)) > enough) return false;
+    // Powers of t cancel at the end, most with weights far apart, for doubles further on as well.
+    for (const double now : {next_down(x), x, next_up(x)}) {
+      const DoubleDouble root = clock.parameter_at(now);
+      SpanClock::Around all = clock.around(now);
+      if ((root - all.low).hi < 0) all.low = root;
+      if ((root - all.high).hi > 0) all.high = root;
+      if (proof.change_over(all) > enough) return false;
+    }
     const auto [up, down] = backward_at(t);
     return !(up < down) || proof.change_over({up, down}) <= enough;
   }

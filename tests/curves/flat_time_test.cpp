@@ -488,12 +488,12 @@ Tally tally_of_flats(int count) {
 
 TEST(CompileFlatTime, NoHostileCurveIsFartherThanTheProgramSays) {
   const Tally tally = tally_of_flats(support::test_count(25));
-  EXPECT_GT(tally.compiled, 19 * tally.refused);
+  EXPECT_EQ(tally.refused, 0);
   EXPECT_GT(tally.worst, 0.9) << "a bound that is never nearly reached is too wide";
 }
 
 TEST(CompileFlatTimeStress, NoHostileCurveIsFartherThanTheProgramSays) {
-  EXPECT_GT(tally_of_flats(support::test_count(2'000)).compiled, 0);
+  EXPECT_EQ(tally_of_flats(support::test_count(2'000)).refused, 0);
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ void EnvelopePatchReader::read_ports() {
     port.device = reader.string("device", "");
     constexpr PortSpec::Wire kWires[] = {PortSpec::Wire::none, PortSpec::Wire::usb,
                                          PortSpec::Wire::din};
-    port.wire = kWires[reader.choice("wire", 0, {"none", "usb", "din"})];
+    port.wire = kWires[reader.choice("wire", 1, {"none", "usb", "din"})];
     port.running_status = reader.boolean("running_status", true);
     refuse(reader, {"running_status"}, port.wire == PortSpec::Wire::din, "wire = \"din\"");
     keep(reader.finish());

@@ -96,7 +96,7 @@ enum class NoteOutput {
 struct PortSpec {
   std::string name;    ///< in the patch
   std::string device;  ///< part of a port's name; "": a port of our own
-  enum class Wire { none, usb, din } wire = Wire::none;
+  enum class Wire { none, usb, din } wire = Wire::usb;
   bool running_status = true;  ///< counted on, with Wire::din
 };
 

@@ -88,21 +88,25 @@ void EnvelopePlayer::State::note_off(int channel, int key, int velocity,
 
 void EnvelopePlayer::State::pass_on(int channel, int key, int velocity,
                                     base::SampleTime time) KNOTWAVE_RT {
-  passed[static_cast<std::size_t>(channel)][static_cast<std::size_t>(key)] = true;
+  std::uint8_t& count = passed[static_cast<std::size_t>(channel)][static_cast<std::size_t>(key)];
+  count = static_cast<std::uint8_t>(std::min(count + 1, 255));
   emit_midi(0x90, channel, key, velocity, time);
 }
 
 void EnvelopePlayer::State::pass_off(int channel, int key, int velocity,
                                      base::SampleTime time) KNOTWAVE_RT {
-  bool& is_on = passed[static_cast<std::size_t>(channel)][static_cast<std::size_t>(key)];
-  if (!is_on) return;
-  is_on = false;
+  std::uint8_t& count = passed[static_cast<std::size_t>(channel)][static_cast<std::size_t>(key)];
+  if (count == 0) return;
+  --count;
   emit_midi(0x80, channel, key, velocity, time);
 }
 
 void EnvelopePlayer::State::end_passed(int channel, base::SampleTime time) KNOTWAVE_RT {
   if (spec.notes != NoteOutput::thru) return;
-  for (int key = 0; key < 128; ++key) pass_off(channel, key, 64, time);
+  for (int key = 0; key < 128; ++key) {
+    pass_off(channel, key, 64, time);
+    passed[static_cast<std::size_t>(channel)][static_cast<std::size_t>(key)] = 0;
+  }
 }
 
 // What a new note may take: a voice that has ended, then one let go, one a pedal holds, one a key

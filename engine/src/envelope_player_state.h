@@ -113,7 +113,7 @@ struct EnvelopePlayer::State {
   std::array<bool, 16> sustain_was_on{}, sostenuto_was_on{};
   std::uint32_t open_channels = 0;  ///< trigger from a controller: where it is open
   MemberChannels members;
-  std::array<std::array<bool, 128>, 16> passed{};  ///< NoteOutput::thru: not let go yet
+  std::array<std::array<std::uint8_t, 128>, 16> passed{};  ///< NoteOutput::thru: not let go yet
 
   // The song.
   ClockGate clock;

@@ -337,5 +337,22 @@ TEST(EnvelopePlayer, WhatCannotBeIsRefused) {
   EXPECT_EQ(code_of({.most_ahead_samples = 65537}), "value_out_of_range");
 }
 
+TEST(EnvelopePlayer, AKeyStruckTwiceEndsTwiceOnItsWayThrough) {
+  EnvelopeRig rig(std::string("notes = 'thru'\n") + kSwell);
+  rig.midi(1, 0x80, 60, 10);  // of nothing
+  rig.midi(2, 0x90, 60, 1);
+  rig.midi(3, 0x90, 60, 2);
+  rig.midi(4, 0x80, 60, 11);
+  rig.midi(5, 0x90, 60, 0);
+  rig.midi(6, 0x80, 60, 12);
+  rig.midi(7, 0x90, 61, 3);
+  rig.midi(8, 0x90, 61, 4);
+  rig.midi(9, 0xB0, 123, 0);
+  rig.play(64);
+  EXPECT_EQ(rig.told(),
+            (std::vector<std::string>{"2 144 60 1", "3 144 60 2", "4 128 60 11", "5 128 60 64",
+                                      "7 144 61 3", "8 144 61 4", "9 128 61 64"}));
+}
+
 }  // namespace
 }  // namespace knotwave::engine

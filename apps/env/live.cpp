@@ -80,6 +80,7 @@ Result<void> Live::open_outputs() {
   if (!sender) return sender.error();
   sender_ = std::move(*sender);
   was_open_.assign(sender_->ports().size(), true);
+  reopened_.assign(sender_->ports().size(), 0);
   if (options_.osc) {
     auto osc = io::OscOutput::open(*options_.osc);
     if (!osc) return osc.error();
@@ -173,6 +174,9 @@ void Live::look() {
   if (sender_->poll()) {
     const auto ports = sender_->ports();
     for (std::size_t i = 0; i < ports.size(); ++i) {
+      if (std::exchange(reopened_[i], ports[i].reopened) != ports[i].reopened) {
+        planner_->say_again(static_cast<int>(i));
+      }
       if (ports[i].is_open == was_open_[i]) continue;
       was_open_[i] = ports[i].is_open;
       tell("'" + ports[i].name + "' " + (was_open_[i] ? "is back" : "has gone"));

@@ -50,6 +50,7 @@ class Live {
   std::unique_ptr<io::MidiInputs> inputs_;  ///< goes first: it calls the planner
   std::vector<std::string> told_;           ///< the status lines of a second ago
   std::vector<bool> was_open_;              ///< outputs
+  std::vector<std::int64_t> reopened_;      ///< of the outputs, when last seen
   bool is_cv_lost_ = false;
 };
 

@@ -116,6 +116,10 @@ void Planner::run() {
 /// All that was heard until now, of all inputs, in order; then the time that passed.
 void Planner::step(std::int64_t now_ns) {
   take_inputs(now_ns);
+  const std::uint32_t again = again_ports_.exchange(0);
+  for (int port = 0; again >> port != 0; ++port) {
+    if ((again >> port & 1) != 0) generator_.say_again(port);
+  }
   generator_.advance(sample_time(now_ns, begin_ns_).sample, *this);
   flush_osc();
 }

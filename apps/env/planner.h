@@ -54,6 +54,8 @@ class Planner final : public io::MidiListener, private engine::GeneratorSink {
   ~Planner() override;
 
   void start();
+  /// Whoever hears this port came back: he is told every value again. [control]
+  void say_again(int port) { again_ports_.fetch_or(1u << port); }
   /// The generator goes to rest; is_at_rest() tells when it is there. [control]
   void go_to_rest() { must_rest_ = true; }
   bool is_at_rest() const { return is_at_rest_; }
@@ -93,6 +95,7 @@ class Planner final : public io::MidiListener, private engine::GeneratorSink {
       kept_;  ///< system exclusive that the generator refers to, round and round
   std::size_t kept_end_ = 0;
   std::atomic<std::int64_t> dropped_in_{0};
+  std::atomic<std::uint32_t> again_ports_{0};  ///< bit p: port p
   std::int64_t begin_ns_ = 0;
   std::array<io::OscNumber, 64> bundle_;
   std::size_t bundled_ = 0;

@@ -210,6 +210,9 @@ std::vector<RouteStatus> EnvelopeGenerator::routes() const {
   return all;
 }
 
+void EnvelopeGenerator::say_again(int port) KNOTWAVE_RT {
+  state_->ports[static_cast<std::size_t>(port)]->say_again();
+}
 void EnvelopeGenerator::go_to_rest() KNOTWAVE_RT { state_->go_to_rest(); }
 bool EnvelopeGenerator::is_at_rest() const KNOTWAVE_RT { return state_->is_at_rest(); }
 

@@ -3,6 +3,7 @@
 #include "knotwave/engine/output_port.h"
 
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cable.h"
@@ -111,6 +112,7 @@ struct OutputPort::State {
   MessageGroup group;
   int group_sent = 0, group_lane = -1;
   Ticks until = 0;  ///< values are known up to here
+  bool must_say_again = false;
 };
 
 void OutputPort::State::begin_block(std::int64_t first, std::size_t n,
@@ -119,6 +121,9 @@ void OutputPort::State::begin_block(std::int64_t first, std::size_t n,
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     lanes[i].begin_block(first, i < values.size() ? values[i] : LaneValues{}, until);
   }
+  if (!std::exchange(must_say_again, false)) return;
+  selections = {};
+  for (OutputLane& lane : lanes) lane.forget(std::max(sample_ticks(first), cable.free_at()), until);
 }
 
 void OutputPort::State::offer(Candidate& best, const Candidate& other,
@@ -374,6 +379,7 @@ void OutputPort::render(std::int64_t first, std::size_t n, std::span<const LaneV
   state.cable.update_use(end);
 }
 
+void OutputPort::say_again() KNOTWAVE_RT { state_->must_say_again = true; }
 int OutputPort::last_step(int lane) const KNOTWAVE_RT {
   return state_->lanes[static_cast<std::size_t>(lane)].sent();
 }
@@ -386,6 +392,9 @@ bool OutputPort::is_waiting() const KNOTWAVE_RT {
   const State& state = *state_;
   if (state.clocks.size() + state.messages.size() != 0) return true;
   if (state.group_sent < state.group.count) return true;
+  for (const ParameterSelection& selection : state.selections) {
+    if (selection.null_at != kNever) return true;
+  }
   return std::any_of(state.lanes.begin(), state.lanes.end(),
                      [](const OutputLane& lane) { return lane.is_waiting(); });
 }

@@ -486,6 +486,37 @@ TEST(EnvelopeGenerator, ProgramsChooseWhichPatchHasADestination) {
   EXPECT_TRUE(rig.kept.messages.back().is(0xB0, 74, 127));
 }
 
+TEST(EnvelopeGenerator, WhoComesBackIsToldEveryValueOnceMore) {
+  Rig rig(
+      {ramp_to("to = 'cc74'\n[[outputs]]\nfrom = 'climb'\nto = 'bend'\nrange = [0, 8191]\n"
+               "[[outputs]]\nfrom = 'climb'\nto = 'nrpn300'\nchannel = 2\n",
+               0.2)});
+  rig.play({{480, 0x90, 60, 100}}, 96000);
+  const std::size_t told = rig.kept.messages.size();
+  rig.play({}, 144000);
+  ASSERT_EQ(rig.kept.messages.size(), told) << "nothing moves";
+  rig.generator->say_again(0);
+  rig.play({}, 240000);
+  std::vector<std::string> again;
+  for (std::size_t i = told; i < rig.kept.messages.size(); ++i) {
+    const auto& bytes = rig.kept.messages[i].event.bytes;
+    again.push_back(std::to_string(bytes[0]) + " " + std::to_string(bytes[1]) + " " +
+                    std::to_string(bytes[2]));
+  }
+  std::sort(again.begin(), again.end());
+  EXPECT_EQ(again, (std::vector<std::string>{"176 74 127", "177 100 127", "177 101 127",
+                                             "177 6 127", "177 98 44", "177 99 2", "224 127 127"}));
+}
+
+TEST(EnvelopeGenerator, AtRestNoParameterIsSelected) {
+  Rig rig({ramp_to("to = 'nrpn300'\nbits = 14\nchannel = 2\n", 2)});
+  rig.play({{480, 0x90, 60, 100}}, 48000);
+  ASSERT_TRUE(rig.rests());
+  ASSERT_GT(rig.kept.messages.size(), 2u);
+  EXPECT_TRUE(rig.kept.messages[rig.kept.messages.size() - 2].is(0xB1, 101, 127));
+  EXPECT_TRUE(rig.kept.messages.back().is(0xB1, 100, 127));
+}
+
 TEST(EnvelopeGenerator, RoutesTellWhatTheySendAndWhatItCosts) {
   Rig rig({ramp_to("to = 'bend'\nrange = [-8192, 8191]\n", 4.0) +
            "[[outputs]]\nfrom = 'climb'\nto = 'osc'\naddress = '/x'\nrange = [0, 10]\n"

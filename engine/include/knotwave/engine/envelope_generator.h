@@ -73,6 +73,8 @@ class EnvelopeGenerator {
   /// Plays up to sample `until`: all that cables begin before `until` - lead_s is sent, in order of
   /// time for each port, and OSC before `until`. Any split gives the same. [audio]
   void advance(std::int64_t until, GeneratorSink& sink) KNOTWAVE_RT;
+  /// Who hears a port is new, or came back: every value is sent there again. [audio]
+  void say_again(int port) KNOTWAVE_RT;
   /// Closes the gates, ends the notes it sent and brings every destination to its rest value, as
   /// fast as the cables let it; what is handled from then on is left out. advance() goes on until
   /// is_at_rest(). [audio]

@@ -113,8 +113,12 @@ class OutputPort {
   void render(std::int64_t first, std::size_t n, std::span<const LaneValues> lanes,
               PortSink& sink) KNOTWAVE_RT;
 
+  /// The receiver is a new one, or came back: every lane's value is sent to it again. [audio]
+  void say_again() KNOTWAVE_RT;
+
   int last_step(int lane) const KNOTWAVE_RT;  ///< what was sent last
-  bool is_waiting() const KNOTWAVE_RT;        ///< something has not been sent yet
+  bool is_waiting() const
+      KNOTWAVE_RT;  ///< something has not been sent yet, or a parameter is selected
   const PortCounters& counters() const KNOTWAVE_RT;
   std::int64_t lane_bytes(int lane) const KNOTWAVE_RT;
 

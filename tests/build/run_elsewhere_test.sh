@@ -44,5 +44,5 @@ for tool in clang++-14 clang-tidy-14 midicsv objdump git jackd mandoc zsh fish d
   have "$tool" "exit 0"
 done
 have python3 "exit 1"  # without any module
-expect test "clang-format-14 python3-mpmath python3-numpy python3-pytest python3-scipy"
+expect test "clang-format-14 python3-mido python3-mpmath python3-numpy python3-pytest python3-scipy"
 exit $failed

@@ -29,6 +29,7 @@ class Reader {
   // Lines and words.
   bool next_line();
   std::string_view word();
+  bool skip(std::string_view expected);
   void finish_line();
   void fault(ErrorCode code, std::string message);
   bool ok() const { return !error_; }
@@ -93,6 +94,15 @@ std::string_view Reader::word() {
   const std::string_view found = line_.substr(at_, end - at_);
   at_ = end;
   return found;
+}
+
+/// The next word, if it is that.
+bool Reader::skip(std::string_view expected) {
+  const std::size_t before = at_, word_before = word_;
+  if (word() == expected) return true;
+  at_ = before;
+  word_ = word_before;
+  return false;
 }
 
 void Reader::finish_line() {
@@ -310,7 +320,10 @@ void Reader::read_midi(JournalRecord& record) {
 
 void Reader::read_target(JournalRecord& record) {
   record.kind = Event::Kind::set_target;
-  record.bytes[0] = static_cast<std::uint8_t>(number("a channel", 1, 16) - 1);
+  record.every_channel = skip(kEveryChannelWord);
+  if (!record.every_channel) {
+    record.bytes[0] = static_cast<std::uint8_t>(number("a channel", 1, 16) - 1);
+  }
   const std::string_view name = word();
   std::uint32_t slot = 0;
   const auto [end, status] = std::from_chars(name.data(), name.data() + name.size(), slot);
@@ -359,6 +372,7 @@ std::vector<Event> journal_events(const Journal& journal) {
     } else if (record.kind == Event::Kind::set_target) {
       event.slot = static_cast<std::uint16_t>(record.index);
       event.number = record.number;
+      event.every_channel = record.every_channel;
     }
   }
   return events;

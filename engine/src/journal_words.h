@@ -7,5 +7,6 @@ namespace knotwave::engine {
 
 inline constexpr std::string_view kMagic = "knotwave-journal";
 inline constexpr std::string_view kEverySlotWord = "all";
+inline constexpr std::string_view kEveryChannelWord = "every";
 
 }  // namespace knotwave::engine

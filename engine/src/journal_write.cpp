@@ -117,7 +117,11 @@ class Writer {
         break;
       case Event::Kind::set_target:
         out_ += " target ";
-        put((record.bytes[0] & 15) + 1);
+        if (record.every_channel) {
+          out_ += kEveryChannelWord;
+        } else {
+          put((record.bytes[0] & 15) + 1);
+        }
         out_ += ' ';
         write_slot(record.index);
         out_ += ' ';

@@ -220,6 +220,8 @@ void LiveEngine::State::record(const Event& event) KNOTWAVE_RT {
     case Event::Kind::set_target:
       record.index = event.slot;
       record.number = event.number;
+      record.bytes[0] = static_cast<std::uint8_t>(event.midi.channel());
+      record.every_channel = event.every_channel;
       break;
     case Event::Kind::all_notes_off:
       break;

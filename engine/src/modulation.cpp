@@ -160,7 +160,7 @@ double Modulation::value_at_note_on(const PatchProgram::MapPart& map, const Play
 Modulation::SlotNumbers Modulation::numbers_at_note_on(const PatchProgram& patch,
                                                        const NoteContext& note) const KNOTWAVE_RT {
   SlotNumbers slots{};
-  for (const ChannelTargets* targets : {note.targets, note.master_targets}) {
+  for (const ChannelTargets* targets : note.targets) {
     if (targets == nullptr) continue;
     for (const std::uint8_t slot : targets->slots()) slots[slot] += targets->number(slot).target();
   }
@@ -211,8 +211,7 @@ void Modulation::render(const PatchProgram& patch, const NoteContext& note, cons
                         std::int64_t first, std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT {
   scratch.slots.fill({});
   if (note.has_targets()) {
-    add_targets(note.targets, first, n, scratch);
-    add_targets(note.master_targets, first, n, scratch);
+    for (const ChannelTargets* targets : note.targets) add_targets(targets, first, n, scratch);
   }
   for (const PatchProgram::Step& step : patch.schedule()) {
     const auto index = static_cast<std::size_t>(step.index);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Where a voice reads what the player does: its note, its channel, and under MPE the zone's master.
 #pragma once
+#include <algorithm>
+#include <array>
+
 #include "knotwave/base/random.h"
 #include "knotwave/engine/channel_state.h"
 #include "knotwave/engine/mpe.h"
@@ -13,10 +16,9 @@ namespace knotwave::engine {
 struct NoteContext {
   const ChannelState* channel = nullptr;
   const ChannelState* master = nullptr;  ///< == channel outside MPE zones
-  /// What set_target events said of the channel, and of the zone's master where that is another; or
-  /// null.
-  const ChannelTargets* targets = nullptr;
-  const ChannelTargets* master_targets = nullptr;
+  /// What set_target events said of all channels, of the channel, and of the zone's master where
+  /// that is another; or null.
+  std::array<const ChannelTargets*, 3> targets{};
   double note = 60;  ///< what sounds, transposition included
   int key = 60;
   int velocity = 100;
@@ -25,13 +27,15 @@ struct NoteContext {
 
   bool is_mpe() const KNOTWAVE_RT { return master != channel; }
   bool has_targets() const KNOTWAVE_RT {
-    return (targets != nullptr && !targets->is_empty()) ||
-           (master_targets != nullptr && !master_targets->is_empty());
+    return std::any_of(targets.begin(), targets.end(), [](const ChannelTargets* numbers) {
+      return numbers != nullptr && !numbers->is_empty();
+    });
   }
   /// A set_target event moves this slot.
   bool is_set(int slot) const KNOTWAVE_RT {
-    return (targets != nullptr && targets->is_set(slot)) ||
-           (master_targets != nullptr && master_targets->is_set(slot));
+    return std::any_of(targets.begin(), targets.end(), [slot](const ChannelTargets* numbers) {
+      return numbers != nullptr && numbers->is_set(slot);
+    });
   }
 };
 

@@ -23,6 +23,7 @@ void Performance::reset(const BankProgram* bank) KNOTWAVE_RT {
   bank_ = bank;
   for (ChannelState& channel : channels_) channel.reset();
   for (ChannelTargets& targets : targets_) targets.reset(config_.rate_hz);
+  every_channel_.reset(config_.rate_hz);
   zones_.reset();
   for (Mono& mono : monos_) {
     mono.stack.clear();
@@ -46,7 +47,9 @@ Performance::Reach Performance::reach_of(const Event& event) const KNOTWAVE_RT {
   using Voices = Reach::Voices;
   const Reach everything{Voices::all, true, 0, 0};
   const int channel = event.midi.channel(), one = event.midi.bytes[1] & 127;
-  if (event.kind == Event::Kind::set_target) return {Voices::channel, false, channel, 0};
+  if (event.kind == Event::Kind::set_target) {
+    return {event.every_channel ? Voices::all : Voices::channel, false, channel, 0};
+  }
   if (event.kind != Event::Kind::midi) return everything;
   switch (event.midi.status()) {
     case base::MidiStatus::note_on: {
@@ -98,7 +101,9 @@ void Performance::handle(const Event& event, base::SampleTime time,
 }
 
 void Performance::set_target(const Event& event, base::SampleTime time) KNOTWAVE_RT {
-  ChannelTargets& targets = targets_[static_cast<std::size_t>(event.midi.channel())];
+  ChannelTargets& targets = event.every_channel
+                                ? every_channel_
+                                : targets_[static_cast<std::size_t>(event.midi.channel())];
   const std::int64_t sample = base::first_sample(time);
   targets.forget_rested(sample);
   if (event.slot < kSlotCount) {

@@ -159,6 +159,7 @@ class Performance {
   const BankProgram* bank_ = nullptr;
   std::array<ChannelState, kChannels> channels_;
   std::array<ChannelTargets, kChannels> targets_;
+  ChannelTargets every_channel_;
   MpeZones zones_;
   std::array<Mono, kChannels> monos_;
   std::array<bool, kChannels> sustain_was_on_{}, sostenuto_was_on_{};

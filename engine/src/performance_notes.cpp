@@ -95,8 +95,8 @@ NoteContext Performance::context(int channel, int key, int velocity,
   note.channel = &channels_[static_cast<std::size_t>(channel)];
   const auto master = static_cast<std::size_t>(zones_.master_of(channel));
   note.master = &channels_[master];
-  note.targets = &targets_[static_cast<std::size_t>(channel)];
-  note.master_targets = note.is_mpe() ? &targets_[master] : nullptr;
+  note.targets = {&every_channel_, &targets_[static_cast<std::size_t>(channel)],
+                  note.is_mpe() ? &targets_[master] : nullptr};
   note.note = choice.note;
   note.key = key;
   note.velocity = velocity;

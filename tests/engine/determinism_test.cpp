@@ -42,6 +42,7 @@ std::vector<Event> busy_journal(std::uint64_t seed, int count, std::int64_t fram
     } else if (kind == 12) {
       event = of_kind(sample, Event::Kind::set_target);
       event.midi.bytes[0] = static_cast<std::uint8_t>(channel);
+      event.every_channel = draw(7, 3) == 0;
       event.slot = static_cast<std::uint16_t>(draw(4, kSlotCount + 1));
       if (event.slot == kSlotCount) event.slot = Event::kEverySlot;
       event.number = draw(5, 4) == 0 ? 0 : draw(6, 1000) / 250.0 - 2;

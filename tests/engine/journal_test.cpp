@@ -25,7 +25,8 @@ using namespace scenes;  // NOLINT: the words of these tests
 
 bool is_same(const JournalRecord& a, const JournalRecord& b) {
   return a.time == b.time && a.kind == b.kind && std::memcmp(a.bytes, b.bytes, 3) == 0 &&
-         a.sysex_size == b.sysex_size && a.index == b.index && a.sysex == b.sysex &&
+         a.sysex_size == b.sysex_size && a.every_channel == b.every_channel && a.index == b.index &&
+         a.sysex == b.sysex &&
          std::bit_cast<std::uint64_t>(a.number) == std::bit_cast<std::uint64_t>(b.number);
 }
 
@@ -51,7 +52,8 @@ JournalRecord random_record(const base::RandomStream& random, std::uint64_t& dra
     case Event::Kind::all_notes_off:
       break;
     case Event::Kind::set_target:
-      record.bytes[0] = static_cast<std::uint8_t>(bits >> 20 & 15);
+      record.every_channel = (bits >> 24 & 1) != 0;
+      if (!record.every_channel) record.bytes[0] = static_cast<std::uint8_t>(bits >> 20 & 15);
       record.index = static_cast<std::uint32_t>(bits >> 30) % (kSlotCount + 2);
       if (record.index == kSlotCount + 1) record.index = Event::kEverySlot;
       record.number = std::bit_cast<double>(random.bits(draw++));
@@ -127,6 +129,9 @@ TEST(Journal, IsTheTextThatTheDocumentShows) {
   record.index = kSlotSourceLevel;
   record.number = -6.5;
   journal.records.push_back(record);
+  record.every_channel = true;
+  record.index = kSlotPan;
+  journal.records.push_back(record);
   record = {};
   record.time.sample = 48000;
   record.kind = Event::Kind::all_notes_off;
@@ -148,6 +153,7 @@ holds
 events
 512+2147483648 midi 90 3c 64
 1000 target 1 oscillator.1.level -6.5
+1000 target every pan -6.5
 48000 notes_off
 end
 )");

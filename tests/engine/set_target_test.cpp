@@ -112,6 +112,50 @@ TEST(SetTarget, ASystemResetTakesAllBack) {
   EXPECT_EQ(rendered(kPlain, events, kFrames), rendered(kPlain, {on(4800, 2, 60)}, kFrames));
 }
 
+Event everywhere(std::int64_t sample, int slot, double number) {
+  Event event = target(sample, 9, slot, number);
+  event.every_channel = true;
+  return event;
+}
+
+TEST(SetTarget, OfEveryChannelMovesAllAndAddsToThoseOfAChannel) {
+  const std::vector<Event> notes = {on(4800, 0, 60), on(9600, 7, 67)};
+  const auto with = [&](std::vector<Event> before) {
+    before.insert(before.end(), notes.begin(), notes.end());
+    return rendered(kPlain, before, kFrames);
+  };
+  const Sound by_one = with({everywhere(0, kSlotAmp, -6)});
+  EXPECT_EQ(by_one, with({target(0, 0, kSlotAmp, -6), target(0, 7, kSlotAmp, -6)}));
+  EXPECT_EQ(
+      with({everywhere(0, kSlotAmp, -6), target(0, 0, kSlotAmp, -6), target(0, 7, kSlotAmp, -6)}),
+      with({target(0, 0, kSlotAmp, -12), target(0, 7, kSlotAmp, -12)}));
+}
+
+TEST(SetTarget, OfEveryChannelOutlivesAReset) {
+  const std::vector<Event> reset = {everywhere(0, kSlotAmp, -6), midi(100, 0xFF, 0, 0),
+                                    on(4800, 2, 60)};
+  EXPECT_EQ(rendered(kPlain, reset, kFrames),
+            rendered(kPlain, {everywhere(0, kSlotAmp, -6), on(4800, 2, 60)}, kFrames));
+}
+
+TEST(SetTarget, OfEveryChannelCountsOnceInAZoneOfMpe) {
+  const auto level = [](const Event& event) {
+    return peak(rendered(kPlain,
+                         {control(0, 0, 101, 0), control(0, 0, 100, 6), control(0, 0, 6, 5), event,
+                          on(4800, 2, 60)},
+                         kFrames)
+                    .left);
+  };
+  EXPECT_EQ(level(everywhere(0, kSlotAmp, -20)), level(target(0, 2, kSlotAmp, -20)));
+}
+
+TEST(SetTarget, OfEveryChannelIsTakenBackByItself) {
+  const std::vector<Event> events = {everywhere(0, kSlotAmp, -20), target(0, 2, kSlotAmp, -6),
+                                     everywhere(1000, Event::kEverySlot, 0), on(4800, 2, 60)};
+  EXPECT_EQ(rendered(kPlain, events, kFrames),
+            rendered(kPlain, {target(0, 2, kSlotAmp, -6), on(4800, 2, 60)}, kFrames));
+}
+
 TEST(SetTarget, OfAZonesMasterMovesTheNotesOfItsMembers) {
   const auto level = [](int channel, double db) {
     return peak(rendered(kPlain,

@@ -20,6 +20,9 @@ struct Event {
   const BankProgram* bank = nullptr;  ///< Kind::install_bank; kept alive by the caller
   std::uint16_t slot = 0;             ///< Kind::set_target: a slot of map_slots.h, or kEverySlot
   double number = 0;  ///< Kind::set_target: added there in every voice of midi.channel()
+  /// Kind::set_target: in the voices of all channels instead, beside what is added by channel. A
+  /// system reset leaves it; kEverySlot takes back only these numbers.
+  bool every_channel = false;
 
   base::SampleTime time() const KNOTWAVE_RT { return midi.time; }
 };

@@ -20,8 +20,9 @@ struct JournalRecord {
   Event::Kind kind = Event::Kind::midi;
   std::uint8_t bytes[3] = {0, 0, 0};
   std::uint8_t sysex_size = 0;
-  std::uint32_t index = 0;  ///< set_target: the slot; install_bank: which of Journal::banks
-  double number = 0;        ///< tempo, set_target
+  bool every_channel = false;  ///< set_target
+  std::uint32_t index = 0;     ///< set_target: the slot; install_bank: which of Journal::banks
+  double number = 0;           ///< tempo, set_target
   std::array<std::uint8_t, 24> sysex{};
 };
 

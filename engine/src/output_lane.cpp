@@ -63,7 +63,8 @@ void OutputLane::address(int channel, int key, std::int64_t from) KNOTWAVE_RT {
   left_at_ = kNever;
 }
 
-void OutputLane::forget(Ticks time, Ticks until) KNOTWAVE_RT {
+void OutputLane::forget(Ticks now, Ticks time, Ticks until) KNOTWAVE_RT {
+  if (has_value_) see_until(now, kNever);
   forget_halves();
   sent_ = sent_before_ = -1;
   if (!has_value_) return;
@@ -231,9 +232,7 @@ std::optional<OutputLane::Plan> OutputLane::coarse_plan(Ticks arrival,
 }
 
 void OutputLane::begin(const Plan& plan, Ticks time, Ticks until, const Cable& cable) KNOTWAVE_RT {
-  const std::int64_t now = time >> kTickBits;
-  reach(extremes_, seen_ + 1, now, plan.arrival);
-  seen_ = std::max(seen_, now);
+  see_until(time, plan.arrival);
   if (plan.step <= extremes_.low.step) extremes_.low.owed_since = kNever;
   if (plan.step >= extremes_.high.step) extremes_.high.owed_since = kNever;
   sent_before_ = sent_;
@@ -243,6 +242,7 @@ void OutputLane::begin(const Plan& plan, Ticks time, Ticks until, const Cable& c
     low_half_ = sent_ & 127;
   }
   arrived_ = plan.arrival;
+  is_on_its_way_ = cable.is_din();
   const LaneCurve::Summary held = curve_.summary(plan.arrival, plan.hold_end);
   const bool is_outrun = held.low < band_low() || held.high > band_high();
   not_before_ = std::max(is_outrun ? plan.hold_end : plan.arrival, time + cable.spacing());
@@ -250,10 +250,18 @@ void OutputLane::begin(const Plan& plan, Ticks time, Ticks until, const Cable& c
 }
 
 void OutputLane::arrives(Ticks time, Ticks until) KNOTWAVE_RT {
+  is_on_its_way_ = false;
   if (time <= arrived_) return;
   arrived_ = time;
   not_before_ = std::max(not_before_, time);
   find_change(time, until);
+}
+
+/// Counts what was reached up to `now` against what the receiver heard of by then.
+void OutputLane::see_until(Ticks now, Ticks held_until) KNOTWAVE_RT {
+  const std::int64_t last = now >> kTickBits;
+  reach(extremes_, seen_ + 1, last, held_until);
+  seen_ = std::max(seen_, last);
 }
 
 /// Adds the samples from..to to what was reached; what was sent last is held until `held_until`.
@@ -284,7 +292,7 @@ void OutputLane::note_extreme(Extreme& extreme, int step, int direction, Ticks t
 bool OutputLane::is_held(int step, int direction, Ticks time, Ticks until) const KNOTWAVE_RT {
   if (time >= until) return false;
   const auto reaches = [&](int sent) { return sent >= 0 && direction * (sent - step) >= 0; };
-  return reaches(sent_) || (time < arrived_ && reaches(sent_before_));
+  return reaches(sent_) || ((is_on_its_way_ || time < arrived_) && reaches(sent_before_));
 }
 
 /// The extreme that nobody will hear of if it is not sent now: the value has left it by the end.

@@ -54,7 +54,8 @@ class OutputLane {
   void address(int channel, int key, std::int64_t from) KNOTWAVE_RT;
   /// Something went by that changes a half of what the receiver holds, or all of it.
   void forget_halves() KNOTWAVE_RT { high_half_ = low_half_ = -1; }
-  void forget(Ticks time, Ticks until) KNOTWAVE_RT;
+  /// What the receiver holds is unknown from `time` on; `now` is when that began.
+  void forget(Ticks now, Ticks time, Ticks until) KNOTWAVE_RT;
   /// New samples: looks for the next change up to `until`.
   void begin_block(std::int64_t first, std::span<const double> values, Ticks until) KNOTWAVE_RT;
   void end_block(std::int64_t n) KNOTWAVE_RT;
@@ -70,7 +71,7 @@ class OutputLane {
   MessageGroup messages(int step, const Selections& selections) const KNOTWAVE_RT;
   /// Its message begins.
   void begin(const Plan& plan, Ticks time, Ticks until, const Cable& cable) KNOTWAVE_RT;
-  /// Its last byte came later than planned.
+  /// Its last byte comes at `time`, as planned or later. On DIN alone, where others go between.
   void arrives(Ticks time, Ticks until) KNOTWAVE_RT;
 
  private:
@@ -93,6 +94,7 @@ class OutputLane {
   Plan mean_plan(Ticks arrival, const Cable& cable) const KNOTWAVE_RT;
   Ticks hold(Ticks arrival, const Cable& cable) const KNOTWAVE_RT;
   std::optional<Plan> coarse_plan(Ticks arrival, const Cable& cable) const KNOTWAVE_RT;
+  void see_until(Ticks now, Ticks held_until) KNOTWAVE_RT;
   void reach(Extremes& extremes, std::int64_t from_sample, std::int64_t to_sample,
              Ticks held_until) const KNOTWAVE_RT;
   void note_extreme(Extreme& extreme, int step, int direction, Ticks time,
@@ -104,7 +106,8 @@ class OutputLane {
   int sent_ = 0;  ///< -1: nobody knows
   int sent_before_ = -1;
   int high_half_ = -1, low_half_ = -1;
-  Ticks arrived_ = 0;  ///< when what was sent last was there
+  Ticks arrived_ = 0;  ///< when what was sent last was there, as far as is known
+  bool is_on_its_way_ = false;
   Ticks not_before_ = 0;
   Ticks left_at_ = kNever;
   bool has_value_ = false, has_begun_ = false;

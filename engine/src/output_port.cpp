@@ -98,7 +98,7 @@ struct OutputPort::State {
   bool send_lane(int index, Ticks time, PortSink& sink) KNOTWAVE_RT;
   void start_group(const MessageGroup& group, int lane, Ticks time, PortSink& sink) KNOTWAVE_RT;
   void send_group_message(Ticks time, PortSink& sink) KNOTWAVE_RT;
-  void notice(const MidiEvent& event) KNOTWAVE_RT;
+  void notice(const MidiEvent& event, Ticks time) KNOTWAVE_RT;
 
   Cable cable;
   double rate_hz;
@@ -111,7 +111,8 @@ struct OutputPort::State {
   // A group on its way.
   MessageGroup group;
   int group_sent = 0, group_lane = -1;
-  Ticks until = 0;  ///< values are known up to here
+  Ticks decided = 0;  ///< nothing is begun before the last decision
+  Ticks until = 0;    ///< values are known up to here
   bool must_say_again = false;
 };
 
@@ -123,7 +124,8 @@ void OutputPort::State::begin_block(std::int64_t first, std::size_t n,
   }
   if (!std::exchange(must_say_again, false)) return;
   selections = {};
-  for (OutputLane& lane : lanes) lane.forget(std::max(sample_ticks(first), cable.free_at()), until);
+  const Ticks now = sample_ticks(first);
+  for (OutputLane& lane : lanes) lane.forget(now - 1, std::max(now, cable.free_at()), until);
 }
 
 void OutputPort::State::offer(Candidate& best, const Candidate& other,
@@ -219,11 +221,11 @@ void OutputPort::State::send_posted(Queue& queue, Ticks time, PortSink& sink) KN
   }
   cable.send(event, time, waiting.is_thru);
   sink.send(event);
-  notice(event);
+  notice(event, time);
 }
 
 /// Controllers of others that change what our receivers hold.
-void OutputPort::State::notice(const MidiEvent& event) KNOTWAVE_RT {
+void OutputPort::State::notice(const MidiEvent& event, Ticks time) KNOTWAVE_RT {
   if (!is_control_change(event)) return;
   const int number = event.bytes[1], channel = event.channel();
   constexpr int kResetAllControllers = 121;
@@ -232,7 +234,7 @@ void OutputPort::State::notice(const MidiEvent& event) KNOTWAVE_RT {
   if (is_entry || is_reset) selections[static_cast<std::size_t>(channel)] = {};
   for (OutputLane& lane : lanes) {
     if (lane.spec().channel != channel + 1) continue;
-    if (is_reset) lane.forget(cable.free_at(), until);
+    if (is_reset) lane.forget(time, cable.free_at(), until);
     const int own = lane.spec().number;
     if (lane.spec().kind == OutputKind::control && (own == number || own + 32 == number)) {
       lane.forget_halves();
@@ -371,8 +373,9 @@ void OutputPort::render(std::int64_t first, std::size_t n, std::span<const LaneV
   const Ticks begin = sample_ticks(first);
   const Ticks end = sample_ticks(first + static_cast<std::int64_t>(n));
   for (;;) {
-    const Candidate candidate = state.next(begin);
+    const Candidate candidate = state.next(std::max(begin, state.decided));
     if (candidate.kind == Candidate::Kind::none || candidate.ready >= end) break;
+    state.decided = candidate.ready;
     state.send(candidate, sink);
   }
   for (OutputLane& lane : state.lanes) lane.end_block(static_cast<std::int64_t>(n));

@@ -101,7 +101,7 @@ Result<void> Live::open_inputs() {
   planner_ =
       std::make_unique<Planner>(config, *generator_, *sender_, osc_.get(), cv_.get(), names_);
   io::MidiInputConfig midi;
-  midi.api = options_.midi_api;
+  midi.api = options_.midi_api == "rtmidi-jack" ? "jack" : options_.midi_api;  // of outputs alone
   midi.ports = options_.midi_in;
   midi.client_name = "Knotwave-env-in";
   auto inputs = io::MidiInputs::open(midi, *planner_);

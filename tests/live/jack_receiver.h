@@ -43,6 +43,18 @@ class JackReceiver {
   bool connect(const std::string& source) {
     return jack_connect(client_, source.c_str(), jack_port_name(port_)) == 0;
   }
+  /// The port of a client whose name begins with `client` that has `word` in its own.
+  bool connect_to_client(const std::string& client, const std::string& word) {
+    const char** const names =
+        jack_get_ports(client_, nullptr, JACK_DEFAULT_MIDI_TYPE, JackPortIsOutput);
+    bool is_done = false;
+    for (const char* const* name = names; name != nullptr && *name != nullptr; ++name) {
+      const std::string port = *name;
+      is_done |= port.starts_with(client) && port.find(word) != std::string::npos && connect(port);
+    }
+    jack_free(names);
+    return is_done;
+  }
   ~JackReceiver() {
     if (client_ != nullptr) jack_client_close(client_);
   }

@@ -41,20 +41,29 @@ std::vector<std::string> connections_of(const std::string& port) {
 
 JackCapture::JackCapture(const std::vector<std::string>& sources, std::size_t max_frames)
     : samples_(sources.size(), std::vector<float>(max_frames)) {
-  client_ = jack_client_open("capture", JackNoStartServer, nullptr);
-  if (client_ == nullptr) return;
-  for (std::size_t c = 0; c < sources.size(); ++c) {
-    ports_.push_back(jack_port_register(client_, ("in_" + std::to_string(c + 1)).c_str(),
-                                        JACK_DEFAULT_AUDIO_TYPE, JackPortIsInput, 0));
-  }
-  jack_set_process_callback(
-      client_, [](jack_nframes_t n, void* us) { return static_cast<JackCapture*>(us)->process(n); },
-      this);
-  if (jack_activate(client_) != 0) return;
+  if (!open(JackPortIsInput)) return;
   is_connected_ = true;
   for (std::size_t c = 0; c < sources.size(); ++c) {
     is_connected_ &= jack_connect(client_, sources[c].c_str(), jack_port_name(ports_[c])) == 0;
   }
+}
+
+JackCapture::JackCapture(std::size_t channels, std::size_t max_frames)
+    : samples_(channels, std::vector<float>(max_frames)) {
+  open(JackPortIsInput | JackPortIsPhysical);
+}
+
+bool JackCapture::open(unsigned long flags) {
+  client_ = jack_client_open("capture", JackNoStartServer, nullptr);
+  if (client_ == nullptr) return false;
+  for (std::size_t c = 0; c < samples_.size(); ++c) {
+    ports_.push_back(jack_port_register(client_, ("in_" + std::to_string(c + 1)).c_str(),
+                                        JACK_DEFAULT_AUDIO_TYPE, flags, 0));
+  }
+  jack_set_process_callback(
+      client_, [](jack_nframes_t n, void* us) { return static_cast<JackCapture*>(us)->process(n); },
+      this);
+  return jack_activate(client_) == 0;
 }
 
 JackCapture::~JackCapture() {

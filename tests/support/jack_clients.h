@@ -18,6 +18,8 @@ class JackCapture {
  public:
   /// `sources`: full port names, one for each channel.
   JackCapture(const std::vector<std::string>& sources, std::size_t max_frames);
+  /// A device called "capture" to which others connect.
+  JackCapture(std::size_t channels, std::size_t max_frames);
   ~JackCapture();
   JackCapture(const JackCapture&) = delete;
   JackCapture& operator=(const JackCapture&) = delete;
@@ -34,6 +36,7 @@ class JackCapture {
   void set_freewheel(bool on);
 
  private:
+  bool open(unsigned long flags);
   int process(jack_nframes_t frames);
 
   jack_client_t* client_ = nullptr;

@@ -1,5 +1,6 @@
-# cmake -DOUT=demo_files.cpp -DROOT=examples -DFILES="a;b" -P EmbedFiles.cmake
-# Writes a C++ source that holds the files byte for byte, under their names relative to ROOT.
+# cmake -DOUT=demo_files.cpp -DROOT=examples -DNAMESPACE=knotwave::demo -DHEADER=demo/demo.h -DFILES="a;b" -P EmbedFiles.cmake
+# Writes a C++ source that holds the files byte for byte, under their names relative to ROOT. HEADER has
+# struct EmbeddedFile and embedded_files().
 set(arrays "")
 set(table "")
 set(number 0)
@@ -13,9 +14,9 @@ foreach(file IN LISTS FILES)
   math(EXPR number "${number} + 1")
 endforeach()
 file(WRITE ${OUT} "// Made by cmake/EmbedFiles.cmake from examples/.
-#include \"demo/demo.h\"
+#include \"${HEADER}\"
 
-namespace knotwave::demo {
+namespace ${NAMESPACE} {
 namespace {
 ${arrays}constexpr EmbeddedFile kFiles[] = {
 ${table}};
@@ -23,5 +24,5 @@ ${table}};
 
 std::span<const EmbeddedFile> embedded_files() { return kFiles; }
 
-}  // namespace knotwave::demo
+}  // namespace ${NAMESPACE}
 ")

@@ -54,3 +54,18 @@ endif()
 if(KNOTWAVE_BUILD_BENCH)
   find_package(benchmark REQUIRED)
 endif()
+
+# CLAP is a few C headers: those of a CLAP package, or those that DPF carries.
+set(KNOTWAVE_HAVE_CLAP FALSE)
+if(KNOTWAVE_BUILD_PLUGINS AND NOT KNOTWAVE_WITH_CLAP STREQUAL "OFF")
+  find_path(KNOTWAVE_CLAP_INCLUDE clap/plugin-factory.h
+    PATHS /usr/share/dpf/distrho/src /usr/local/share/dpf/distrho/src)
+  if(KNOTWAVE_CLAP_INCLUDE)
+    set(KNOTWAVE_HAVE_CLAP TRUE)
+    message(STATUS "Knotwave: CLAP headers in ${KNOTWAVE_CLAP_INCLUDE}")
+  elseif(KNOTWAVE_WITH_CLAP STREQUAL "ON")
+    message(FATAL_ERROR "KNOTWAVE_WITH_CLAP is ON, but there is no clap/plugin-factory.h (Debian: dpf-source)")
+  else()
+    message(STATUS "Knotwave: CLAP not found, built without (Debian: dpf-source)")
+  endif()
+endif()

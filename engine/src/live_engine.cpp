@@ -74,6 +74,9 @@ LiveEngine::State::~State() {
 LiveEngine::LiveEngine(std::unique_ptr<State> state) : state_(std::move(state)) {}
 LiveEngine::~LiveEngine() = default;
 
+bool LiveEngine::is_idle() const KNOTWAVE_RT { return state_->engine->is_idle(); }
+double LiveEngine::rate_hz() const KNOTWAVE_RT { return state_->config.engine.rate_hz; }
+
 Result<std::unique_ptr<LiveEngine>> LiveEngine::create(const LiveConfig& config,
                                                        std::unique_ptr<const BankProgram> bank,
                                                        JournalBank source) {

@@ -90,6 +90,9 @@ class LiveEngine {
   /// [audio] left and right are overwritten.
   void process(std::int64_t time_ns, std::span<const Event> exact, std::span<float> left,
                std::span<float> right) KNOTWAVE_RT;
+  /// As Engine::is_idle(). [audio]
+  bool is_idle() const KNOTWAVE_RT;
+  double rate_hz() const KNOTWAVE_RT;  ///< [any]
 
  private:
   struct State;

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include "knotwave/plugins/instrument.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "knotwave/engine/channel_state.h"
+#include "knotwave/plugins/factory.h"
+#include "knotwave/plugins/parameters.h"
+
+namespace knotwave::plugins {
+namespace {
+
+using engine::Event;
+
+constexpr double kLeastBpm = 1, kMostBpm = 1000;
+/// Nothing comes in but through process(): the rings of the live engine stay empty.
+constexpr int kNoMessages = 16;
+constexpr int kNoJournal = 16;
+constexpr double kNoTapSeconds = 0.01;
+
+Event parameter_event(std::size_t place, double value, base::SampleTime time) KNOTWAVE_RT {
+  Event event;
+  event.kind = Event::Kind::set_target;
+  event.midi.time = time;
+  event.slot = static_cast<std::uint16_t>(parameters()[place].slot);
+  event.number = value;
+  event.every_channel = true;
+  return event;
+}
+
+}  // namespace
+
+Instrument::Instrument(const InstrumentConfig& config) : config_(config), events_(kEventsAtOnce) {
+  for (std::size_t i = 0; i < kMostParameters; ++i) {
+    wanted_[i].store(i < parameters().size() ? parameters()[i].initial : 0);
+  }
+  if (auto spec = engine::read_bank(factory_presets()[0].path, factory_files())) {
+    spec_ = *std::move(spec);
+  }
+}
+Instrument::~Instrument() = default;
+
+Result<void> Instrument::load(engine::BankSpec spec) {
+  for (const engine::PatchSpec& patch : spec.patches) {
+    for (const engine::OscillatorSpec& oscillator : patch.oscillators) {
+      if (oscillator.wave_file.empty()) continue;
+      return fail(ErrorCode::unsupported, "patch '" + patch.name + "' plays the sound file " +
+                                              oscillator.wave_file +
+                                              ": a plugin plays curves, not sound files");
+    }
+  }
+  auto program = engine::BankProgram::create(spec);
+  if (!program) return program.error();
+  spec_ = std::move(spec);
+  program_ = *std::move(program);
+  if (live_ == nullptr) return {};
+  live_->collect();
+  live_->install(std::move(program_));
+  return {};
+}
+
+Result<void> Instrument::load_preset(std::size_t number) {
+  if (number >= factory_presets().size()) {
+    return fail(ErrorCode::value_out_of_range,
+                "there is no preset " + std::to_string(number) + "; 0 to " +
+                    std::to_string(factory_presets().size() - 1) + " are there");
+  }
+  auto spec = engine::read_bank(factory_presets()[number].path, factory_files());
+  if (!spec) return spec.error();
+  return load(*std::move(spec));
+}
+
+Result<void> Instrument::load_file(const std::string& path) {
+  auto spec = engine::read_bank(path);
+  if (!spec) return spec.error();
+  return load(*std::move(spec));
+}
+
+Result<void> Instrument::activate(double rate_hz) {
+  if (program_ == nullptr) {
+    auto program = engine::BankProgram::create(spec_);
+    if (!program) return program.error();
+    program_ = *std::move(program);
+  }
+  engine::LiveConfig config;
+  config.engine.rate_hz = rate_hz;
+  config.engine.max_voices = config_.max_voices;
+  config.input_messages = kNoMessages;
+  config.journal_records = kNoJournal;
+  config.tap_s = kNoTapSeconds;
+  auto live = engine::LiveEngine::create(config, std::move(program_));
+  if (!live) return live.error();
+  live_ = *std::move(live);
+  heard_.fill(0);
+  for (std::size_t i = 0; i < parameters().size(); ++i) heard_[i] = parameters()[i].initial;
+  has_news_.store(true);
+  tempo_microseconds_ = 500000;
+  return {};
+}
+
+void Instrument::deactivate() { live_.reset(); }
+
+void Instrument::collect() {
+  if (live_ != nullptr) live_->collect();
+}
+
+void Instrument::set_parameter(std::size_t place, double value) KNOTWAVE_RT {
+  if (place >= parameters().size()) return;
+  const Parameter& parameter = parameters()[place];
+  const double held =
+      value == value ? std::clamp(value, parameter.low, parameter.high) : parameter.initial;
+  wanted_[place].store(held, std::memory_order_relaxed);
+  has_news_.store(true, std::memory_order_release);
+}
+
+double Instrument::parameter(std::size_t place) const KNOTWAVE_RT {
+  return place < parameters().size() ? wanted_[place].load(std::memory_order_relaxed) : 0;
+}
+
+void Instrument::begin(std::span<float> left, std::span<float> right) KNOTWAVE_RT {
+  left_ = left;
+  right_ = right;
+  done_ = event_count_ = 0;
+  if (!has_news_.exchange(false, std::memory_order_acquire)) return;
+  for (std::size_t i = 0; i < parameters().size(); ++i) {
+    const double value = wanted_[i].load(std::memory_order_relaxed);
+    if (value == heard_[i]) continue;
+    heard_[i] = value;
+    push(parameter_event(i, value, {}));
+  }
+}
+
+void Instrument::push(const Event& event) KNOTWAVE_RT {
+  if (event_count_ == events_.size()) {
+    const auto at = static_cast<std::size_t>(std::max<std::int64_t>(event.time().sample, 0));
+    render_until(std::min(std::max(at, done_ + 1), left_.size()));
+  }
+  if (event_count_ == events_.size()) return;  // a block without a sample left
+  Event& added = events_[event_count_++];
+  added = event;
+  added.midi.time.sample =
+      std::max<std::int64_t>(event.midi.time.sample - static_cast<std::int64_t>(done_), 0);
+}
+
+void Instrument::add(const Event& event) KNOTWAVE_RT { push(event); }
+
+void Instrument::add_parameter(std::size_t place, double value, std::int64_t sample) KNOTWAVE_RT {
+  if (place >= parameters().size()) return;
+  set_parameter(place, value);
+  heard_[place] = wanted_[place].load(std::memory_order_relaxed);
+  push(parameter_event(place, heard_[place], {sample, 0}));
+}
+
+void Instrument::add_tempo(double beats_per_minute, std::int64_t sample) KNOTWAVE_RT {
+  if (!(beats_per_minute >= kLeastBpm && beats_per_minute <= kMostBpm)) return;
+  const auto microseconds = static_cast<std::uint32_t>(std::floor(6e7 / beats_per_minute + 0.5));
+  if (microseconds == tempo_microseconds_) return;
+  tempo_microseconds_ = microseconds;
+  Event event;
+  event.kind = Event::Kind::tempo;
+  event.midi.time.sample = sample;
+  event.microseconds_per_quarter = microseconds;
+  push(event);
+}
+
+void Instrument::render_until(std::size_t sample) KNOTWAVE_RT {
+  const std::size_t n = sample - done_;
+  if (n == 0) return;
+  live_->process(0, std::span(events_).first(event_count_), left_.subspan(done_, n),
+                 right_.subspan(done_, n));
+  event_count_ = 0;
+  done_ = sample;
+}
+
+void Instrument::render() KNOTWAVE_RT { render_until(left_.size()); }
+
+/// Notes end within 5 ms, which nobody hears.
+void Instrument::reset() KNOTWAVE_RT {
+  constexpr std::size_t kPart = 64;
+  constexpr double kFadeSeconds = 0.0055;
+  std::array<float, kPart> left, right;
+  std::array<Event, 16> silence;
+  for (std::size_t channel = 0; channel < silence.size(); ++channel) {
+    silence[channel].midi.bytes[0] = static_cast<std::uint8_t>(0xB0 + channel);
+    silence[channel].midi.bytes[1] = engine::kAllSoundOff;
+  }
+  std::span<const Event> events(silence);
+  for (double left_s = kFadeSeconds; left_s > 0;
+       left_s -= static_cast<double>(kPart) / live_->rate_hz()) {
+    live_->process(0, events, left, right);
+    events = {};
+  }
+}
+
+bool Instrument::is_idle() const KNOTWAVE_RT { return live_->is_idle(); }
+
+}  // namespace knotwave::plugins

@@ -36,13 +36,14 @@ Result<std::string> FileShelf::read(const std::string& path) {
 }
 
 Result<std::string> FileShelf::read_first(const std::string& path) {
-  if (!from_texts_) {
-    auto text = base::read_file(path, base::kMaxDocumentBytes);
-    const bool is_kept = std::any_of(texts_.begin(), texts_.end(),
-                                     [&](const FileText& file) { return file.path == path; });
-    if (text && !is_kept) texts_.push_back({path, *text});
-    return text;
-  }
+  auto text = from_texts_ ? given_text(path) : base::read_file(path, base::kMaxDocumentBytes);
+  const bool is_kept = std::any_of(texts_.begin(), texts_.end(),
+                                   [&](const FileText& file) { return file.path == path; });
+  if (text && !is_kept) texts_.push_back({path, *text});
+  return text;
+}
+
+Result<std::string> FileShelf::given_text(const std::string& path) const {
   const auto given = std::find_if(given_.begin(), given_.end(),
                                   [&](const FileText& file) { return file.path == path; });
   if (given == given_.end()) {

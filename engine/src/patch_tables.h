@@ -56,6 +56,7 @@ class FileShelf {
   };
 
  private:
+  Result<std::string> given_text(const std::string& path) const;
   bool from_texts_ = false;
   std::span<const FileText> given_;
   std::vector<std::string> chain_;

@@ -71,6 +71,9 @@ void name(Parameter& parameter) {
     *words = capital(std::move(*words));
   }
   parameter.name = text;
+  for (std::string* words : {&parameter.name, &parameter.group}) {
+    if (words->starts_with("Lfo")) words->replace(0, 3, "LFO");
+  }
 }
 
 std::vector<Parameter> table() {

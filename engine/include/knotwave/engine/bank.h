@@ -36,7 +36,8 @@ struct BankSpec {
   std::vector<int> entry_patch;    ///< [entries.size()] index into patches
   /// What read_bank() read besides `source_name`: patches, curve files, tunings.
   std::vector<std::string> files;
-  /// `source_name` and `files` with what was in them, as they were read; none of parse_patch().
+  /// `source_name` and `files` with what was in them, as they were read (of texts: those that were
+  /// needed); none of parse_patch().
   std::vector<FileText> texts;
 };
 

@@ -36,13 +36,39 @@ void add_devices_of(const PaHostApiInfo& api, PaHostApiIndex api_number, FoundDe
 void ask_library(bool with_jack, FoundDevices& found) {
   const PortAudioUse use("Knotwave-list");
   if (!use.error().empty()) {
-    found.notes.push_back("portaudio: " + use.error());
+    found.notes.push_back(use.error());
     return;
   }
   for (PaHostApiIndex i = 0; i < Pa_GetHostApiCount(); ++i) {
     const PaHostApiInfo* const api = Pa_GetHostApiInfo(i);
     if (api != nullptr && (with_jack || api->type != paJACK)) add_devices_of(*api, i, found);
   }
+}
+
+/// ALSA as PortAudio brings it in; we do not link it.
+template <class Function>
+Function* alsa(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
+}
+
+/// Where ALSA's configuration has neither of the two PCMs that PortAudio (19.6) keeps for the end
+/// of its search, an assertion of its ends the program. Empty: all is well.
+std::string alsa_fault() {
+  struct Tree;
+  auto* const update = alsa<int(Tree**)>("snd_config_update_ref");
+  auto* const search = alsa<int(Tree*, const char*, Tree**)>("snd_config_search");
+  auto* const give_back = alsa<void(Tree*)>("snd_config_unref");
+  if (update == nullptr || search == nullptr || give_back == nullptr) return {};
+  Tree* top = nullptr;
+  Tree* found = nullptr;
+  const bool is_read = update(&top) >= 0 && top != nullptr;
+  const bool is_usable =
+      is_read && (search(top, "pcm.default", &found) >= 0 || search(top, "pcm.dmix", &found) >= 0);
+  if (is_read) give_back(top);
+  if (is_usable) return {};
+  return std::string("alsa: its configuration ") +
+         (is_read ? "names no PCM 'default'" : "cannot be read") +
+         ": install libasound2-data, or mend ~/.asoundrc or what ALSA_CONFIG_PATH names";
 }
 
 // PortAudio keeps the pointer.
@@ -59,13 +85,15 @@ void set_jack_name(const std::string& name) {
 
 PortAudioUse::PortAudioUse(const std::string& client_name) : ticket_(JackTicket::take()) {
   if (!ticket_) {
-    error_ = "a JACK client of ours that lost its server is still open: try again";
+    error_ = "portaudio: a JACK client of ours that lost its server is still open: try again";
     return;
   }
+  error_ = alsa_fault();
+  if (!error_.empty()) return;
   set_jack_name(client_name);
   const PaError fault = Pa_Initialize();
   is_initialised_ = fault == paNoError;
-  if (!is_initialised_) error_ = Pa_GetErrorText(fault);
+  if (!is_initialised_) error_ = std::string("portaudio: ") + Pa_GetErrorText(fault);
   const bool uses_jack = is_initialised_ && Pa_HostApiTypeIdToHostApiIndex(paJACK) >= 0;
   if (!uses_jack) ticket_.reset();
   silence_alsa();  // it may have been loaded only now

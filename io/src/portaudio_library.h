@@ -21,7 +21,7 @@ class PortAudioUse {
   ~PortAudioUse();
   PortAudioUse(const PortAudioUse&) = delete;
   PortAudioUse& operator=(const PortAudioUse&) = delete;
-  /// Empty where all is well.
+  /// With whose it is in front; empty where all is well.
   const std::string& error() const noexcept { return error_; }
 
  private:

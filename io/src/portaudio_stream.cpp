@@ -84,7 +84,7 @@ Error refused(PaError fault, const FoundDevice& device, double rate_hz) {
 
 Result<void> PortAudioDevice::open(const AudioConfig& config, const FoundDevice& device) {
   use_ = std::make_unique<PortAudioUse>(config.client_name);
-  if (!use_->error().empty()) return fail(ErrorCode::io_failed, "portaudio: " + use_->error());
+  if (!use_->error().empty()) return fail(ErrorCode::io_failed, use_->error());
   const PaDeviceInfo* const info = Pa_GetDeviceInfo(device.library_number);
   if (info == nullptr || device.info.name != info->name) {
     return fail(ErrorCode::io_failed, "the devices have just changed: try again");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include <jack/midiport.h>
 
@@ -68,8 +69,8 @@ void JackGraph::set_news_callbacks() {
       this);
   jack_set_port_registration_callback(
       client(),
-      [](jack_port_id_t /*port*/, int comes, void* us) {
-        if (comes != 0) static_cast<JackGraph*>(us)->news_.ports_came.fetch_add(1);
+      [](jack_port_id_t port, int comes, void* us) {
+        if (comes != 0) static_cast<JackGraph*>(us)->note_port(port);
       },
       this);
   jack_set_buffer_size_callback(
@@ -92,6 +93,20 @@ void JackGraph::set_news_callbacks() {
         static_cast<JackGraph*>(us)->news_.is_freewheeling = starts != 0;
       },
       this);
+}
+
+/// On JACK's own thread for news.
+void JackGraph::note_port(jack_port_id_t port) {
+  const jack_port_t* const found = jack_port_by_id(client(), port);
+  const char* const name = found == nullptr ? nullptr : jack_port_name(found);
+  if (name == nullptr) return;
+  const std::lock_guard lock(mutex_);
+  ports_that_came_.emplace(name);
+}
+
+std::set<std::string> JackGraph::take_ports_that_came() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(ports_that_came_, {});
 }
 
 int JackGraph::process(jack_nframes_t frames) KNOTWAVE_RT {

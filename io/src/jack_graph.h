@@ -3,6 +3,9 @@
 #pragma once
 #include <array>
 #include <atomic>
+#include <mutex>
+#include <set>
+#include <string>
 #include <vector>
 
 #include <jack/jack.h>
@@ -19,7 +22,6 @@ class JackGraph {
   /// What JACK told, for any thread to read.
   struct News {
     std::atomic<std::int64_t> xruns{0}, midi_dropped{0};
-    std::atomic<std::int64_t> ports_came{0};  ///< to the server, of anybody
     std::atomic<int> block_frames{0}, rate_hz{0};
     std::atomic<bool> is_freewheeling{false};
     std::atomic<bool> is_over{false};
@@ -33,6 +35,8 @@ class JackGraph {
   jack_client_t* client() const noexcept { return client_.get(); }
   jack_port_t* output(std::size_t channel) const noexcept { return outputs_[channel]; }
   BlockPump& pump() noexcept { return pump_; }
+  /// Full names of the ports, of anybody, that came to the server since the last call. [control]
+  std::set<std::string> take_ports_that_came();
   News& news() noexcept { return news_; }
 
  private:
@@ -40,8 +44,11 @@ class JackGraph {
   std::size_t read_midi(jack_nframes_t frames) KNOTWAVE_RT;
   void set_callbacks();
   void set_news_callbacks();
+  void note_port(jack_port_id_t port);
 
   News news_;
+  std::mutex mutex_;
+  std::set<std::string> ports_that_came_;
   BlockPump pump_;
   CycleClock clock_;
   std::vector<jack_port_t*> outputs_;

@@ -57,7 +57,6 @@ class JackStream final : public AudioStream {
   bool is_active_ = false, is_started_ = false;
   std::string lost_;                 ///< why
   std::vector<std::string> joined_;  ///< MIDI sources that were connected
-  std::int64_t ports_seen_ = 0;      ///< of those that came to the server
   BlockWatch watch_;
 };
 
@@ -155,17 +154,16 @@ AudioStatus JackStream::status() {
 
 void JackStream::connect_midi(const std::vector<std::string>& sources) {
   if (!is_active_ || !lost_.empty()) return;
-  std::erase_if(joined_, [&](const std::string& name) {
-    return std::find(sources.begin(), sources.end(), name) == sources.end();
-  });
+  const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
   // One that went and came back at once has the same name.
-  const std::int64_t came = graph().news().ports_came;
-  if (std::exchange(ports_seen_, came) != came) {
-    joined_.clear();
-  }
+  const std::set<std::string> came = graph().take_ports_that_came();
+  std::erase_if(
+      joined_, [&](const std::string& name) { return !has(sources, name) || came.contains(name); });
   std::vector<std::string> fresh;
   for (const std::string& name : sources) {
-    if (std::find(joined_.begin(), joined_.end(), name) == joined_.end()) fresh.push_back(name);
+    if (!has(joined_, name)) fresh.push_back(name);
   }
   if (fresh.empty()) return;
   const auto joined = std::make_shared<std::vector<std::string>>();

@@ -140,6 +140,10 @@ bool JackMidiSender::is_connected_to(const std::string& port) const {
   return jack_port_connected_to(port_, port.c_str()) != 0;
 }
 
+void JackMidiSender::disconnect_from(const std::string& port) {
+  jack_disconnect(client_, jack_port_name(port_), port.c_str());
+}
+
 bool JackMidiSender::wait_until_sent(double timeout_s) const {
   return wait_until([&] { return is_sent_.load(); }, timeout_s);
 }

@@ -65,6 +65,7 @@ class JackMidiSender {
 
   bool is_connected() const { return is_connected_; }
   bool is_connected_to(const std::string& port) const;  ///< now
+  void disconnect_from(const std::string& port);
   bool wait_until_sent(double timeout_s) const;
   /// JACK's frame time that `after` counts from.
   jack_nframes_t begin_frame_time() const { return begin_; }

@@ -123,9 +123,9 @@ class AudioStream {
   virtual AudioStatus status() = 0;
   /// jack, once it was started: connects ports of others that send MIDI, by JACK's names, to the
   /// stream's own port, so that they are heard exact to the sample. Call it with all of them some
-  /// ten times a second: each is connected when it comes, and who takes that connection away keeps
-  /// it so until some port comes to the server. AudioStatus::midi_sources tells who is connected.
-  /// Elsewhere this does nothing.
+  /// ten times a second: each is connected when it comes, once; who takes that connection away
+  /// keeps it so until that port goes and comes again. AudioStatus::midi_sources tells who is
+  /// connected. Elsewhere this does nothing.
   virtual void connect_midi(const std::vector<std::string>& sources);
 
   /// A library hung, as PortAudio does when a JACK server dies, and has not come back: it cannot be

@@ -7,6 +7,8 @@
 #include "knotwave/base/document.h"
 #include "knotwave/io/midi_file.h"
 
+#include "wait_notice.h"
+
 namespace knotwave::synth {
 namespace {
 
@@ -48,6 +50,9 @@ std::string device_table(const io::AudioDeviceList& sound, const io::MidiPortLis
   return text + notes(midi.notes);
 }
 
-std::string device_list() { return device_table(io::list_audio_devices(), io::list_midi_ports()); }
+std::string device_list() {
+  const WaitNotice notice("waiting for a sound server that does not answer yet");
+  return device_table(io::list_audio_devices(), io::list_midi_ports());
+}
 
 }  // namespace knotwave::synth

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <compare>
 #include <iterator>
 #include <span>
 #include <system_error>
 #include <thread>
 #include <utility>
+
+#include "wait_notice.h"
 
 namespace knotwave::synth {
 namespace {
@@ -17,6 +20,7 @@ constexpr std::int64_t kTryEveryNs = 500'000'000;
 /// A call that hangs in a JACK server that stands still comes back with it, or when it is killed.
 constexpr std::int64_t kJackPatienceNs = 10'000'000'000;
 constexpr double kFadeSeconds = 0.05;
+constexpr double kFadeStallSeconds = 0.3;
 constexpr std::size_t kMostRecords = 2'000'000;                ///< some 130 MB
 constexpr std::size_t kMostBankBytes = std::size_t{64} << 20;  ///< every save is another bank
 
@@ -81,7 +85,10 @@ Result<void> Player::open_stream(const PlayerConfig& config) {
     lost_format_.rate_hz = config.lost_rate_hz;
     return open_substitute();
   }
-  auto stream = io::AudioStream::open(config.audio, *this);
+  auto stream = [&] {
+    const WaitNotice notice("waiting for the sound server, which does not answer yet");
+    return io::AudioStream::open(config.audio, *this);
+  }();
   if (stream) {
     stream_ = *std::move(stream);
     return {};
@@ -154,7 +161,7 @@ std::span<const engine::Event> Player::exact_events(const io::AudioBlock& block)
   if (!song_) return heard;
   const auto played = song_->due(block.frames);
   const auto comes_first = [](const engine::Event& a, const engine::Event& b) {
-    return a.time() < b.time();
+    return std::is_lt(a.time() <=> b.time());
   };
   exact_.clear();
   std::merge(played.begin(), played.end(), heard.begin(), heard.end(), std::back_inserter(exact_),
@@ -336,12 +343,23 @@ void Player::play(const std::vector<engine::LiveMessage>& messages) {
 }
 
 void Player::fade_out() {
-  live_->fade(0, static_cast<float>(kFadeSeconds));
+  using std::chrono::steady_clock, std::chrono::duration;
   const io::AudioFormat& format = stream_->format();
-  const double blocks_s = 2.0 * format.block_frames / std::max(1.0, format.rate_hz);
-  const double latency_s = std::clamp(format.latency_s, 0.0, 0.3);
-  std::this_thread::sleep_for(std::chrono::duration<double>(kFadeSeconds + std::min(blocks_s, 0.3) +
-                                                            (is_lost_ ? 0 : latency_s)));
+  const std::int64_t end = live_->status().now + std::lround(kFadeSeconds * rate_hz_) +
+                           std::int64_t{2} * format.block_frames;
+  live_->fade(0, static_cast<float>(kFadeSeconds));
+  const double block_s = format.block_frames / std::max(1.0, format.rate_hz);
+  // On a busy machine blocks come late: it is over when it was rendered, or when none comes.
+  const duration<double> stall(std::max(kFadeStallSeconds, 2 * block_s));
+  auto moved = steady_clock::now();
+  for (std::int64_t before = -1; steady_clock::now() - moved < stall;) {
+    const std::int64_t now = live_->status().now;
+    if (now >= end) break;
+    if (std::exchange(before, now) != now) moved = steady_clock::now();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  const double latency_s = is_lost_ ? 0 : std::clamp(format.latency_s, 0.0, 0.3);
+  std::this_thread::sleep_for(duration<double>(latency_s + block_s));
 }
 
 void Player::describe(SynthStatus& status) {

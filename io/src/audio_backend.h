@@ -22,8 +22,9 @@ struct FoundDevices {
 
 inline constexpr const char* kPortAudioJack = "portaudio-jack";
 
-/// Adds the devices of the JACK server and returns true where one runs. [control]
-bool find_jack_devices(FoundDevices& found);
+enum class JackServer { none, runs, hangs };
+/// Adds the devices of the JACK server, where one runs. [control]
+JackServer find_jack_devices(FoundDevices& found);
 /// Adds PortAudio's devices, those of its JACK API too if asked. [control]
 void find_portaudio_devices(bool with_jack, FoundDevices& found);
 

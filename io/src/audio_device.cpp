@@ -59,12 +59,20 @@ void count_devices(FoundDevices& found) {
   for (FoundDevice& device : found.devices) device.info.number = number++;
 }
 
+// PortAudio is a client of that server, too, whatever device it plays, and would wait for good.
+Error server_hangs() {
+  return fail(ErrorCode::unsupported,
+              "the JACK server does not answer: end it or start it anew, or record without one: "
+              "--audio-api none --record FILE");
+}
+
 // A server that runs without a device of its own can be asked for by its name.
 OpenedStream open_jack(const AudioConfig& config, AudioClient& client) {
   FoundDevices found;
-  const bool runs = find_jack_devices(found);
+  const JackServer server = find_jack_devices(found);
+  if (server == JackServer::hangs) return server_hangs();
   count_devices(found);
-  if (runs && found.devices.empty() && config.device.empty()) {
+  if (server == JackServer::runs && found.devices.empty() && config.device.empty()) {
     return open_jack_stream(config, {}, client);
   }
   const auto device = choose_device(found, config);
@@ -81,8 +89,11 @@ std::int64_t steady_clock_ns() KNOTWAVE_RT {
 
 AudioDeviceList list_audio_devices() {
   FoundDevices found;
-  find_jack_devices(found);
-  find_portaudio_devices(false, found);
+  if (find_jack_devices(found) == JackServer::hangs) {
+    found.notes.emplace_back("portaudio: not asked, as it would wait for that server, too");
+  } else {
+    find_portaudio_devices(false, found);
+  }
   count_devices(found);
   AudioDeviceList list;
   for (FoundDevice& device : found.devices) list.devices.push_back(std::move(device.info));
@@ -97,7 +108,7 @@ OpenedStream AudioStream::open(const AudioConfig& asked, AudioClient& client) {
   if (config.api == "none") return open_paced_stream(config, client);
   if (config.api == "jack") return open_jack(config, client);
   FoundDevices found;
-  find_jack_devices(found);
+  if (find_jack_devices(found) == JackServer::hangs) return server_hangs();
   const bool jack_is_default =
       config.api.empty() && config.device.empty() && !found.devices.empty();
   if (!jack_is_default) find_portaudio_devices(config.api == kPortAudioJack, found);

@@ -88,7 +88,7 @@ std::vector<JackOutputs> physical_outputs(jack_client_t* client) {
   return found;
 }
 
-bool find_jack_devices(FoundDevices& found) {
+JackServer find_jack_devices(FoundDevices& found) {
   silence_jack();
   const auto answer = std::make_shared<Answer>();
   switch (jack_calls().run(kServerAnswersWithin, [answer] { ask_server(*answer); })) {
@@ -96,16 +96,16 @@ bool find_jack_devices(FoundDevices& found) {
       break;
     case PatientCall::Outcome::hangs:
       found.notes.emplace_back("jack: the server does not answer");
-      return false;
+      return JackServer::hangs;
     case PatientCall::Outcome::refused:
       found.notes.emplace_back("jack: an earlier call of its library hangs");
-      return false;
+      return JackServer::hangs;
   }
   std::move(answer->found.devices.begin(), answer->found.devices.end(),
             std::back_inserter(found.devices));
   std::move(answer->found.notes.begin(), answer->found.notes.end(),
             std::back_inserter(found.notes));
-  return answer->runs;
+  return answer->runs ? JackServer::runs : JackServer::none;
 }
 
 }  // namespace knotwave::io

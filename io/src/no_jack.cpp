@@ -4,10 +4,10 @@
 
 namespace knotwave::io {
 
-bool find_jack_devices(FoundDevices& found) {
+JackServer find_jack_devices(FoundDevices& found) {
   found.notes.emplace_back(
       "jack: not built in; install libjack-jackd2-dev and build again with KNOTWAVE_WITH_JACK=ON");
-  return false;
+  return JackServer::none;
 }
 
 OpenedStream open_jack_stream(const AudioConfig& /*config*/, const FoundDevice& /*device*/,

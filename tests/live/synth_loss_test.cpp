@@ -81,6 +81,30 @@ TEST_F(SynthLoss, AServerThatStandsStillIsToldAndWhenItGoesOnTheSameProgramSound
   expect_end(synth);
 }
 
+TEST_F(SynthLoss, AServerThatStandsStillFromTheStartIsToldWithinASecondAndThenGivenUp) {
+  server_.pause();
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"small.toml"}, {"small.toml", "--audio-api", "alsa"}}) {
+    SynthProcess synth(words, here());
+    EXPECT_LT(seconds_until([&] { return synth.says("waiting for the sound server", 0); }, 10),
+              kTellsSeconds);
+    EXPECT_EQ(synth.exit_code(5), 1) << "in 3 s, and PortAudio is not waited for";
+    EXPECT_NE(synth.err().find("the JACK server does not answer: end it or start it anew"),
+              std::string::npos)
+        << synth.err();
+  }
+  SynthProcess listed({"--list-devices"}, here());
+  EXPECT_LT(seconds_until([&] { return listed.says("waiting for a sound server", 0); }, 10),
+            kTellsSeconds);
+  EXPECT_EQ(listed.exit_code(6), 0);
+  // One that goes on in time is played.
+  SynthProcess synth({"small.toml", "--json-status"}, here());
+  ASSERT_TRUE(synth.says("waiting for the sound server"));
+  server_.resume();
+  EXPECT_TRUE(synth.says("\"state\": \"running\"")) << synth.err();
+  expect_end(synth);
+}
+
 TEST_F(SynthLoss, AServerThatStoodStillAndIsStartedAnewSounds) {
   SynthProcess synth(words("jack"), here());
   OscSender player;

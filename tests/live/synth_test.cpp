@@ -135,6 +135,25 @@ TEST_F(SynthUnderJack, OnlyTheInputsThatWereNamedAreConnected) {
   EXPECT_EQ(synth.exit_code(), 0) << synth.err();
 }
 
+TEST_F(SynthUnderJack, AConnectionThatWasTakenAwayStaysAwayUntilItsSourceComesAgain) {
+  auto first = std::make_unique<JackMidiSender>("", std::vector<JackMidiSender::Message>());
+  SynthProcess synth({"small.toml", "--json-status"}, here());
+  const auto is_connected = [&] { return first->is_connected_to(kMidiIn); };
+  ASSERT_LT(seconds_until(is_connected, 20), 20) << synth.err();
+  first->disconnect_from(kMidiIn);
+  ASSERT_TRUE(synth.says("'sender:out' was unplugged")) << synth.err();
+  for (int round = 0; round < 2; ++round) {  // ports of others come and go
+    const JackMidiSender second("", {});
+    ASSERT_LT(seconds_until([&] { return second.is_connected_to(kMidiIn); }, 20), 20);
+    EXPECT_FALSE(is_connected());
+  }
+  first.reset();
+  first = std::make_unique<JackMidiSender>("", std::vector<JackMidiSender::Message>());
+  EXPECT_LT(seconds_until(is_connected, 20), 20) << synth.err();
+  synth.signal(SIGTERM);
+  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+}
+
 TEST_F(SynthUnderJack, ASongIsPlayedAndRecordedToTheVerySamplesOfItsRender) {
   ASSERT_EQ(run({"small.toml", "small.mid", "-o", "render.wav", "--bits", "32f", "--tail", "1"})
                 .exit_code,
@@ -209,8 +228,9 @@ TEST_F(SynthUnderJack, CtrlCFadesOut) {
   JackMidiSender sender(kMidiIn, held_note());
   ASSERT_TRUE(sender.wait_until_sent(10));
   seconds_until([&] { return synth.number("peak_left_dbfs") > -30; }, 20);
-  JackCapture capture({kOut1}, 10 * 48000);
-  ASSERT_TRUE(capture.wait_for(4800, 10));
+  JackCapture capture({kOut1}, 20 * 48000);
+  // It captures before it is connected.
+  seconds_until([&] { return onset(capture.channel(0)) + 9600 < capture.frames(); }, 10);
   synth.signal(SIGINT);
   EXPECT_EQ(synth.exit_code(), 130);
   const std::vector<float> heard = capture.channel(0);
@@ -221,8 +241,8 @@ TEST_F(SynthUnderJack, CtrlCFadesOut) {
     for (std::size_t i = from; i < to; ++i) most = std::max(most, std::abs(heard[i]));
     return most;
   };
-  ASSERT_GT(end, 4800u);
-  const float before = peak(0, 2400);
+  ASSERT_GT(end, 7200u);
+  const float before = peak(end - 7200, end - 4800);
   EXPECT_GT(before, 0.05f);
   EXPECT_LT(peak(end - 100, end), 0.06f * before) << "the last 2 ms of 50";
   EXPECT_GT(peak(end - 2400, end - 1900), 0.5f * before) << "not cut before that";
@@ -253,6 +273,31 @@ TEST_F(SynthProgram, WithoutADeviceSaysWhatToDoAndRecordsAllTheSame) {
   EXPECT_EQ(synth.exit_code(), 0) << synth.err();
   EXPECT_THAT(synth.err(), HasSubstr("playing without a device"));
   EXPECT_GT(io::read_sound(file("a.wav"))->frames, 4800);
+}
+
+TEST_F(SynthProgram, WhereAlsaHasNoConfigurationSaysSoAndRecordsAllTheSame) {
+  const support::NoJackServer none;
+  for (const char* path : {"/dev/null", "/no/such", "broken.conf"}) {
+    write("broken.conf", "pcm.default {");
+    const support::SetVariable read_by_alsa("ALSA_CONFIG_PATH", path);
+    for (const std::vector<std::string>& api :
+         {std::vector<std::string>{}, {"--audio-api", "alsa"}}) {
+      std::vector<std::string> words = {"small.toml"};
+      words.insert(words.end(), api.begin(), api.end());
+      SynthProcess refused(words, here());
+      EXPECT_EQ(refused.exit_code(), 1) << path;
+      EXPECT_THAT(refused.err(), HasSubstr("no sound device"));
+      EXPECT_THAT(refused.err(), HasSubstr("alsa: its configuration "));
+      EXPECT_THAT(refused.err(), HasSubstr("install libasound2-data"));
+      EXPECT_THAT(refused.err(), HasSubstr("--record FILE"));
+    }
+    SynthProcess listed({"--list-devices"}, here());
+    EXPECT_EQ(listed.exit_code(), 0);
+    EXPECT_THAT(listed.out(), HasSubstr("alsa: its configuration "));
+  }
+  const support::SetVariable read_by_alsa("ALSA_CONFIG_PATH", "/dev/null");
+  SynthProcess synth({"small.toml", "--record", "a.wav", "--duration", "0.3"}, here());
+  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
 }
 
 TEST_F(SynthProgram, AFullDiskEndsTheTakeAndNotTheSound) {

@@ -59,7 +59,7 @@ void CvStream::handle(const Heard& heard) KNOTWAVE_RT {
   engine::MidiClock& clock = clocks_[heard.event.port % clocks_.size()];
   const std::uint8_t status = heard.event.bytes[0];
   if ((status == 0xF8 || status == 0xF2 || (status >= 0xFA && status <= 0xFC)) &&
-      clock.handle(event.midi)) {
+      clock.handle(event.midi).tempo) {
     engine::Event tempo = clock.tempo_event();
     tempo.midi.time = event.midi.time;
     player_->handle(tempo);

@@ -49,6 +49,7 @@ void HeldState::add(const engine::JournalRecord& record) {
       for (Channel& channel : channels_) channel.keys.fill(0);
       break;
     case Kind::install_bank:
+    case Kind::position:  // every clock tells its own again
       break;
   }
 }

@@ -38,26 +38,32 @@ engine::MidiLearn::Out MidiEntry::learned(const base::MidiEvent& event) noexcept
   return out;
 }
 
-MidiEntry::Clock MidiEntry::follow_clock(const base::MidiEvent& event, std::int64_t time_ns,
-                                         std::size_t port) noexcept {
+/// Whether bit `port` was set; it is no more.
+bool MidiEntry::take_bit(std::atomic<std::uint32_t>& bits, std::size_t port) noexcept {
+  const std::uint32_t bit = std::uint32_t{1} << port;
+  if ((bits.load(std::memory_order_relaxed) & bit) == 0) return false;
+  bits.fetch_and(~bit, std::memory_order_relaxed);
+  return true;
+}
+
+std::optional<engine::MidiClock::News> MidiEntry::follow_clock(const base::MidiEvent& event,
+                                                               std::int64_t time_ns,
+                                                               std::size_t port) noexcept {
   const std::uint8_t status = event.bytes[0];
   const bool is_transport = status >= 0xFA && status <= 0xFC;
-  if (status != 0xF8 && status != 0xF2 && !is_transport) return Clock::none;
+  if (status != 0xF8 && status != 0xF2 && !is_transport) return std::nullopt;
   base::MidiEvent timed = event;
   timed.time = clock_time(time_ns);
-  const bool is_new = clocks_[port].handle(timed);
+  if (take_bit(must_tell_, port)) clocks_[port].tell_again();
+  const engine::MidiClock::News news = clocks_[port].handle(timed);
   const engine::MidiClockStatus now = clocks_[port].status();
   bpm_.store(static_cast<float>(now.bpm), std::memory_order_relaxed);
   jitter_ms_.store(static_cast<float>(now.jitter_ms), std::memory_order_relaxed);
-  return is_new ? Clock::new_tempo : Clock::followed;
+  return news;
 }
 
 PortNotes& MidiEntry::notes_of(std::size_t port) noexcept {
-  const std::uint32_t bit = std::uint32_t{1} << port;
-  if ((must_forget_.load(std::memory_order_relaxed) & bit) != 0) {
-    must_forget_.fetch_and(~bit, std::memory_order_relaxed);
-    notes_[port] = {};
-  }
+  if (take_bit(must_forget_, port)) notes_[port] = {};
   return notes_[port];
 }
 
@@ -67,14 +73,21 @@ void MidiEntry::heard(const base::MidiEvent& event, std::int64_t time_ns) noexce
   const auto push = [&](const engine::LiveMessage& message) {
     gate_.push(static_cast<int>(port), message);
   };
-  // Clocks are no music: a tempo that changed is handed on in their place.
-  if (const Clock clock = follow_clock(event, time_ns, port); clock != Clock::none) {
-    if (clock == Clock::followed) return;
-    engine::LiveMessage tempo;
-    tempo.kind = engine::LiveMessage::Kind::tempo;
-    tempo.time_ns = time_ns;
-    tempo.number = clocks_[port].tempo_event().microseconds_per_quarter;
-    return push(tempo);
+  // Clocks are no music: what they tell is handed on in their place.
+  if (const auto news = follow_clock(event, time_ns, port)) {
+    engine::LiveMessage told;
+    told.time_ns = time_ns;
+    if (news->tempo) {
+      told.kind = engine::LiveMessage::Kind::tempo;
+      told.number = clocks_[port].tempo_event().microseconds_per_quarter;
+      push(told);
+    }
+    if (news->position) {
+      told.kind = engine::LiveMessage::Kind::position;
+      told.number = static_cast<double>(clocks_[port].position_event().song_clocks);
+      push(told);
+    }
+    return;
   }
   notes_of(port).heard(event);
   const auto out = learned(event);
@@ -114,9 +127,9 @@ std::span<const engine::Event> MidiEntry::translated(std::span<const base::MidiE
   for (const base::MidiEvent& event : exact.first(std::min(exact.size(), kMostExact))) {
     const auto offset_ns =
         static_cast<std::int64_t>(static_cast<double>(event.time.sample) * 1e9 / rate_hz);
-    if (const Clock clock = follow_clock(event, time_ns + offset_ns, kStreamPort);
-        clock != Clock::none) {
-      if (clock == Clock::new_tempo) add(clocks_[kStreamPort].tempo_event(), event.time);
+    if (const auto news = follow_clock(event, time_ns + offset_ns, kStreamPort)) {
+      if (news->tempo) add(clocks_[kStreamPort].tempo_event(), event.time);
+      if (news->position) add(clocks_[kStreamPort].position_event(), event.time);
       continue;
     }
     notes_of(kStreamPort).heard(event);
@@ -129,7 +142,7 @@ std::span<const engine::Event> MidiEntry::translated(std::span<const base::MidiE
 }
 
 void MidiEntry::forget() noexcept {
-  must_forget_ = ~std::uint32_t{0};
+  must_forget_ = kEveryPort;
   const Lock lock(lock_, kEndless);
   if (learn_) learn_->controllers_went_back();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What every MIDI message goes through on its way to the engine: knobs that were learnt, clocks
-// that become tempo, and the memory of what a cable holds down.
+// that become tempo and song position, and the memory of what a cable holds down.
 #pragma once
 #include <array>
 #include <atomic>
@@ -28,7 +28,7 @@ class MidiEntry {
   /// A message of a cable, or its loss. [any], one thread at a time for each port.
   void heard(const base::MidiEvent& event, std::int64_t time_ns) noexcept;
   void lost(int port) noexcept;
-  /// Of the stream's own port: what goes to the engine, the tempo of its clock included; times are
+  /// Of the stream's own port: what goes to the engine, what its clock tells included; times are
   /// offsets in a block that was asked for at `time_ns`. Valid until the next call. [audio]
   std::span<const engine::Event> translated(std::span<const base::MidiEvent> exact,
                                             std::int64_t time_ns, double rate_hz) KNOTWAVE_RT;
@@ -38,6 +38,8 @@ class MidiEntry {
   void leave_out(std::uint32_t ports) noexcept { left_out_ = ports; }
   /// Nothing is held any more, and every controller is back. [control]
   void forget() noexcept;
+  /// The engine is another one: each clock tells it tempo and song position anew. [control]
+  void tell_again() noexcept { must_tell_ = kEveryPort; }
 
   // Learning. [control]
   void use(engine::MidiLearn learn);
@@ -76,17 +78,21 @@ class MidiEntry {
   static constexpr int kTries = 1000;                            ///< of threads that play
   static constexpr int kEndless = 1 << 30;                       ///< of the control thread
   static constexpr std::size_t kStreamPort = io::kMaxMidiPorts;  ///< the stream's own
+  static constexpr std::uint32_t kEveryPort = ~std::uint32_t{0};
 
+  static bool take_bit(std::atomic<std::uint32_t>& bits, std::size_t port) noexcept;
   PortNotes& notes_of(std::size_t port) noexcept;
   void follow_stream_sender() noexcept;
   engine::MidiLearn::Out learned(const base::MidiEvent& event) noexcept;
-  /// What a message means to a port's clock: nothing, no new tempo, or a new tempo_event().
-  enum class Clock { none, followed, new_tempo };
-  Clock follow_clock(const base::MidiEvent& event, std::int64_t time_ns, std::size_t port) noexcept;
+  /// What a message means to a port's clock; none: it is no clock's.
+  std::optional<engine::MidiClock::News> follow_clock(const base::MidiEvent& event,
+                                                      std::int64_t time_ns,
+                                                      std::size_t port) noexcept;
 
   EngineGate& gate_;
   std::array<PortNotes, kStreamPort + 1> notes_;  ///< each of the thread that hears its port
   std::atomic<std::uint32_t> must_forget_{0};     ///< bit p: what port p held is over
+  std::atomic<std::uint32_t> must_tell_{0};       ///< bit p: as tell_again()
   std::array<engine::MidiClock, kStreamPort + 1> clocks_;
   std::atomic<std::uint32_t> left_out_{0};
   std::atomic<float> bpm_{0}, jitter_ms_{0};

@@ -134,6 +134,7 @@ Result<void> Player::make_engine(double song_position_s) {
   is_journal_whole_ = true;
   if (song_) song_->begin(rate_hz_, song_position_s);
   gate_.lead_to(live_.get());
+  entry_.tell_again();
   return {};
 }
 

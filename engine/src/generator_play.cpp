@@ -82,7 +82,7 @@ void EnvelopeGenerator::State::take_event(const Event& event) KNOTWAVE_RT {
   for (LaneRow& row : rows) row.still = 0;
   if (event.kind == Event::Kind::midi) {
     post_thru(event.midi);
-    if (clock.handle(event.midi)) {
+    if (clock.handle(event.midi).tempo) {
       const Event tempo = clock.tempo_event();
       for (auto& player : players) player->handle(tempo);
     }

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxBanks = 65536;
 constexpr std::int64_t kMaxSample = std::int64_t{1} << 62;
+constexpr std::int64_t kMaxSongClocks = std::int64_t{1} << 53;
 constexpr int kMaxVoices = 4096;  // as Engine::create() has it
 constexpr std::size_t kHashDigits = 64;
 
@@ -287,6 +288,10 @@ void Reader::read_record(const Journal& journal, JournalRecord& record) {
     if (!(record.number >= 0 && record.number <= 0xFFFFFFFFu)) {
       fault(ErrorCode::value_out_of_range, "microseconds per quarter note must be 0 to 4294967295");
     }
+  } else if (what == "position") {
+    record.kind = Event::Kind::position;
+    record.number = static_cast<double>(
+        number<std::int64_t>("the song position in MIDI clocks", 0, kMaxSongClocks));
   } else if (what == "bank") {
     record.kind = Event::Kind::install_bank;
     record.index = number<std::uint32_t>("a bank's number", 0, kMaxBanks);
@@ -301,7 +306,7 @@ void Reader::read_record(const Journal& journal, JournalRecord& record) {
     read_target(record);
   } else {
     fault(ErrorCode::unknown_name,
-          "'midi', 'tempo', 'bank', 'notes_off' or 'target' must be here after a time");
+          "'midi', 'tempo', 'position', 'bank', 'notes_off' or 'target' must be here after a time");
   }
 }
 
@@ -373,6 +378,8 @@ std::vector<Event> journal_events(const Journal& journal) {
       event.slot = static_cast<std::uint16_t>(record.index);
       event.number = record.number;
       event.every_channel = record.every_channel;
+    } else if (record.kind == Event::Kind::position) {
+      event.song_clocks = static_cast<std::int64_t>(record.number);
     }
   }
   return events;

@@ -108,6 +108,10 @@ class Writer {
         out_ += " tempo ";
         put_double(record.number);
         break;
+      case Event::Kind::position:
+        out_ += " position ";
+        put(static_cast<std::int64_t>(record.number));
+        break;
       case Event::Kind::install_bank:
         out_ += " bank ";
         put(record.index);

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kChannelCount = 16;
 constexpr double kMostMicroseconds = 16777215;
+constexpr double kMostSongClocks = 0x1p53;  // every whole number up to it is a double
 
 bool is_before(const PlacedMessage& a, const PlacedMessage& b) KNOTWAVE_RT {
   return a.sample != b.sample ? a.sample < b.sample : a.message.time_ns < b.message.time_ns;
@@ -177,6 +178,12 @@ void LiveEngine::State::add_message(const PlacedMessage& placed) KNOTWAVE_RT {
     case LiveMessage::Kind::all_notes_off:
       event.kind = Event::Kind::all_notes_off;
       break;
+    case LiveMessage::Kind::position:
+      event.kind = Event::Kind::position;
+      event.song_clocks = message.number > 0
+                              ? static_cast<std::int64_t>(std::min(message.number, kMostSongClocks))
+                              : 0;
+      break;
   }
   record(event);
 }
@@ -222,6 +229,9 @@ void LiveEngine::State::record(const Event& event) KNOTWAVE_RT {
       record.number = event.number;
       record.bytes[0] = static_cast<std::uint8_t>(event.midi.channel());
       record.every_channel = event.every_channel;
+      break;
+    case Event::Kind::position:
+      record.number = static_cast<double>(event.song_clocks);
       break;
     case Event::Kind::all_notes_off:
       break;

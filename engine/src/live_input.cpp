@@ -43,7 +43,8 @@ bool is_note_on(const LiveMessage& m) KNOTWAVE_RT {
 
 /// Whether it still counts when a panic came after it.
 bool survives_panic(const LiveMessage& m) KNOTWAVE_RT {
-  if (m.kind == LiveMessage::Kind::tempo || channels_ended(m) != 0) return true;
+  if (m.kind == LiveMessage::Kind::tempo || m.kind == LiveMessage::Kind::position) return true;
+  if (channels_ended(m) != 0) return true;
   if (m.kind != LiveMessage::Kind::midi) return false;
   const int status = m.bytes[0] & 0xF0;
   const bool is_bank = status == 0xB0 && (m.bytes[1] == kBankMsb || m.bytes[1] == kBankLsb);

@@ -33,7 +33,7 @@ class LiveInput {
   /// The next message, or null. Samples never decrease and are at or after the block's first.
   const PlacedMessage* front() KNOTWAVE_RT { return has_front_ ? &front_ : nullptr; }
   /// Of what may be played in this block only what ends notes, chooses a sound or sets the tempo
-  /// still is.
+  /// or the song position still is.
   void panic(const LiveClock& clock) KNOTWAVE_RT;
   /// Goes on to the next one.
   void pop(const LiveClock& clock) KNOTWAVE_RT;

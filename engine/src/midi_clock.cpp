@@ -9,7 +9,7 @@ namespace {
 
 using base::SampleTime;
 
-constexpr double kClocksPerQuarter = 24;
+constexpr double kClocksPerQuarter = kSongClocksPerQuarter;
 constexpr double kShortestS = 0.0025, kLongestS = 0.25;  // 1000 and 10 quarters a minute
 constexpr double kPauseS = 1;
 constexpr double kPi = 3.14159265358979323846;
@@ -20,6 +20,7 @@ constexpr int kReopened = 12;     // clocks: w is then 0.12
 constexpr int kHalfQuarter = 12;  // clocks, before a first tempo is told and errors are measured
 constexpr double kCatchUpClocks = 96;  // until e times less is missing
 constexpr double kLeastS = 1e-4;       // jitter below this is not told from none
+constexpr double kMostApart = 0.25;    // clocks, of a song's first one and the loop
 
 double between(SampleTime from, SampleTime to) KNOTWAVE_RT {
   const double fractions = static_cast<double>(to.fraction) - static_cast<double>(from.fraction);
@@ -56,48 +57,73 @@ void MidiClock::reset(double rate_hz) {
   rate_hz_ = rate_hz;
 }
 
-bool MidiClock::handle(const base::MidiEvent& event) KNOTWAVE_RT {
+MidiClock::News MidiClock::handle(const base::MidiEvent& event) KNOTWAVE_RT {
   switch (event.bytes[0]) {
     case 0xF2:
       position_ = 6 * std::int64_t{(event.bytes[1] & 127) | (event.bytes[2] & 127) << 7};
-      awaits_clock_ = true;
-      return false;
+      awaits_clock_ = must_place_ = true;
+      return {};
     case 0xF8:
       return clock(event.time);
     case 0xFA:
       position_ = 0;
-      is_running_ = awaits_clock_ = true;
-      return false;
+      is_running_ = awaits_clock_ = must_place_ = true;
+      return {};
     case 0xFB:
       awaits_clock_ = awaits_clock_ || !is_running_;
+      must_place_ = must_place_ || !is_running_;
       is_running_ = true;
-      return false;
+      return {};
     case 0xFC:
       is_running_ = false;
-      return false;
+      return {};
     default:
-      return false;
+      return {};
   }
 }
 
-bool MidiClock::clock(SampleTime time) KNOTWAVE_RT {
+void MidiClock::tell_again() KNOTWAVE_RT { must_tell_ = must_place_ = true; }
+
+MidiClock::News MidiClock::clock(SampleTime time) KNOTWAVE_RT {
   ++clocks_;
+  News news;
   const double interval = between(last_, time);
   const bool is_new =
       stage_ == Stage::none || interval > kPauseS * rate_hz_ || interval < -0.01 * rate_hz_;
   if (is_new) {
     begin(time);
-    return false;
-  }
-  if (stage_ == Stage::locked) {
-    const bool counts = take(time);
+    must_place_ = must_place_ || is_running_;
+  } else if (stage_ == Stage::locked) {
+    const bool counts = take(time, is_running_ && awaits_clock_);
     last_ = time;
-    return counts && decide(time);
+    if (!counts) return news;
+    news.position = place(time);
+    const bool was_together = is_together_;
+    news.tempo = decide(time);
+    must_place_ = must_place_ || (news.tempo && !was_together);
+  } else {
+    play(1);
+    last_ = time;
+    if (interval >= kShortestS * rate_hz_ && interval <= kLongestS * rate_hz_) lock(time, interval);
   }
-  play(1);
-  last_ = time;
-  if (interval >= kShortestS * rate_hz_ && interval <= kLongestS * rate_hz_) lock(time, interval);
-  return false;
+  if (must_tell_ && has_tempo_) {
+    news.tempo = true;
+    event_time_ = time;
+  }
+  must_tell_ = false;
+  news.position = place(time) || news.position;
+  return news;
+}
+
+/// Where the song is new, the clock that came says it.
+bool MidiClock::place(SampleTime time) KNOTWAVE_RT {
+  if (!must_place_ || !is_running_) return false;
+  must_place_ = false;
+  placed_ = position_ - 1;
+  place_time_ = time;
+  tempo_clocks_ = static_cast<double>(loop_clocks_);
+  tempo_begin_ = time;
+  return true;
 }
 
 void MidiClock::begin(SampleTime time) KNOTWAVE_RT {
@@ -119,9 +145,15 @@ void MidiClock::lock(SampleTime time, double period) KNOTWAVE_RT {
   is_together_ = false;
 }
 
-/// True if the loop took it.
-bool MidiClock::take(SampleTime time) KNOTWAVE_RT {
+/// True if the loop took it. A song may begin between two clocks or in a pause: the loop goes on
+/// from there.
+bool MidiClock::take(SampleTime time, bool begins) KNOTWAVE_RT {
   double error = between(next_, time);
+  if (begins && std::abs(error) > kMostApart * period_) {
+    next_ = time;
+    error = 0;
+    doubt_ = {};
+  }
   std::int64_t assumed = 1;
   const bool fits = std::abs(error) <= 0.5 * period_;
   if (!fits && error < 0) {
@@ -232,6 +264,14 @@ Event MidiClock::tempo_event() const KNOTWAVE_RT {
   event.kind = Event::Kind::tempo;
   event.midi.time = event_time_;
   event.microseconds_per_quarter = microseconds_;
+  return event;
+}
+
+Event MidiClock::position_event() const KNOTWAVE_RT {
+  Event event;
+  event.kind = Event::Kind::position;
+  event.midi.time = place_time_;
+  event.song_clocks = placed_;
   return event;
 }
 

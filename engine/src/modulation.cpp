@@ -115,6 +115,7 @@ void Modulation::start(const PatchProgram& patch, const NoteContext& note, base:
   }
   for (std::size_t i = 0; i < patch.envelopes().size(); ++i) envelopes_[i].reset();
   limited_joins_seen_ = 0;
+  song_moves_seen_ = tempo.moves();
   for (std::size_t i = 0; i < patch.lfos().size(); ++i) {
     const dsp::LfoSpec& spec = patch.lfos()[i].spec;
     base::RandomStream stream = note.random;
@@ -207,8 +208,19 @@ void Modulation::follow(const PatchProgram& patch, const NoteContext& note,
   }
 }
 
+// Free LFOs are where the song is; the others count from their note.
+void Modulation::follow_song(const PatchProgram& patch, const TempoClock& tempo) KNOTWAVE_RT {
+  if (song_moves_seen_ == tempo.moves()) return;
+  song_moves_seen_ = tempo.moves();
+  for (std::size_t i = 0; i < patch.lfos().size(); ++i) {
+    const dsp::LfoSpec& spec = patch.lfos()[i].spec;
+    if (spec.beats > 0 && spec.mode == dsp::LfoSpec::Mode::free) lfos_[i].song_moved();
+  }
+}
+
 void Modulation::render(const PatchProgram& patch, const NoteContext& note, const TempoClock& tempo,
                         std::int64_t first, std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT {
+  follow_song(patch, tempo);
   scratch.slots.fill({});
   if (note.has_targets()) {
     for (const ChannelTargets* targets : note.targets) add_targets(targets, first, n, scratch);
@@ -279,8 +291,10 @@ void Modulation::render_lfo(const PatchProgram& patch, const NoteContext& note, 
     rate_factor = std::span(scratch.source).first(n);
   }
   if (part.spec.beats > 0) {
+    const bool is_free = part.spec.mode == dsp::LfoSpec::Mode::free;
     for (std::size_t i = 0; i < n; ++i) {
-      scratch.beats[i] = tempo.beats_at(first + static_cast<std::int64_t>(i));
+      const std::int64_t sample = first + static_cast<std::int64_t>(i);
+      scratch.beats[i] = is_free ? tempo.beats_at(sample) : tempo.played_at(sample);
     }
     beats = std::span(scratch.beats).first(n);
   }
@@ -297,6 +311,7 @@ void Modulation::look_ahead_from(const Modulation& other, const PatchProgram& pa
   copy(other.lfos_, patch.lfos().size(), lfos_);
   copy(other.players_, patch.maps().size(), players_);
   limited_joins_seen_ = other.limited_joins_seen_;
+  song_moves_seen_ = other.song_moves_seen_;
 }
 
 bool Modulation::is_still(const PatchProgram& patch, std::int64_t first) const KNOTWAVE_RT {

@@ -80,6 +80,7 @@ class Modulation {
                   std::int64_t first, std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT;
   void render_envelope(const PatchProgram& patch, std::size_t index, std::int64_t first,
                        std::size_t n, ModulationScratch& scratch) KNOTWAVE_RT;
+  void follow_song(const PatchProgram& patch, const TempoClock& tempo) KNOTWAVE_RT;
   void render_lfo(const PatchProgram& patch, const NoteContext& note, std::size_t index,
                   const TempoClock& tempo, std::int64_t first, std::size_t n,
                   ModulationScratch& scratch) KNOTWAVE_RT;
@@ -88,6 +89,7 @@ class Modulation {
   std::array<dsp::Lfo, kMaxLfos> lfos_;
   std::array<Player, kMaxMaps> players_;
   int limited_joins_seen_ = 0;
+  std::uint32_t song_moves_seen_ = 0;
 };
 
 }  // namespace knotwave::engine

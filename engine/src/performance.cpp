@@ -97,6 +97,9 @@ void Performance::handle(const Event& event, base::SampleTime time,
     case Event::Kind::set_target:
       set_target(event, time);
       break;
+    case Event::Kind::position:
+      tempo_.set_position(time, static_cast<double>(event.song_clocks) / kSongClocksPerQuarter);
+      break;
   }
 }
 

@@ -15,7 +15,8 @@ namespace {
 
 using namespace scenes;  // NOLINT: the words of these tests
 
-/// Notes, bends, wheels, pedals, tempo, program changes and targets on all channels at odd times.
+/// Notes, bends, wheels, pedals, tempo, song positions, program changes and targets on all channels
+/// at odd times.
 std::vector<Event> busy_journal(std::uint64_t seed, int count, std::int64_t frames) {
   const base::RandomStream random{seed, 0, 77};
   std::vector<Event> events;
@@ -26,7 +27,7 @@ std::vector<Event> busy_journal(std::uint64_t seed, int count, std::int64_t fram
     const std::int64_t sample = static_cast<std::int64_t>(draw(0, 1 << 30)) * frames >> 30;
     const auto fraction =
         static_cast<std::uint32_t>(random.bits(static_cast<std::uint64_t>(i * 8 + 1)));
-    const int channel = draw(2, 16), kind = draw(3, 13);
+    const int channel = draw(2, 16), kind = draw(3, 14);
     Event event = midi(sample, 0x90 | channel, 36 + draw(4, 48), 1 + draw(5, 127), fraction);
     if (kind >= 5) event.midi.bytes[0] = static_cast<std::uint8_t>(0x80 | channel);
     constexpr int kControls[] = {1, 7, 10, 11, 64, 66, 67, 74};
@@ -46,6 +47,11 @@ std::vector<Event> busy_journal(std::uint64_t seed, int count, std::int64_t fram
       event.slot = static_cast<std::uint16_t>(draw(4, kSlotCount + 1));
       if (event.slot == kSlotCount) event.slot = Event::kEverySlot;
       event.number = draw(5, 4) == 0 ? 0 : draw(6, 1000) / 250.0 - 2;
+    }
+    if (kind == 13) {
+      event = of_kind(sample, Event::Kind::position);
+      event.midi.time.fraction = fraction;
+      event.song_clocks = draw(4, 10000);
     }
     events.push_back(event);
   }

@@ -33,7 +33,7 @@ bool is_same(const JournalRecord& a, const JournalRecord& b) {
 JournalRecord random_record(const base::RandomStream& random, std::uint64_t& draw) {
   JournalRecord record;
   const std::uint64_t bits = random.bits(draw++);
-  record.kind = static_cast<Event::Kind>(bits % 5);
+  record.kind = static_cast<Event::Kind>(bits % 6);
   if ((bits >> 8 & 3) == 0) record.time.fraction = static_cast<std::uint32_t>(bits >> 32);
   switch (record.kind) {
     case Event::Kind::midi:
@@ -45,6 +45,9 @@ JournalRecord random_record(const base::RandomStream& random, std::uint64_t& dra
       break;
     case Event::Kind::tempo:
       record.number = static_cast<double>(bits >> 40);
+      break;
+    case Event::Kind::position:
+      record.number = static_cast<double>(bits >> 11);
       break;
     case Event::Kind::install_bank:
       record.index = static_cast<std::uint32_t>(bits >> 20 & 1);
@@ -133,6 +136,11 @@ TEST(Journal, IsTheTextThatTheDocumentShows) {
   record.index = kSlotPan;
   journal.records.push_back(record);
   record = {};
+  record.time.sample = 24000;
+  record.kind = Event::Kind::position;
+  record.number = 96;
+  journal.records.push_back(record);
+  record = {};
   record.time.sample = 48000;
   record.kind = Event::Kind::all_notes_off;
   journal.records.push_back(record);
@@ -154,6 +162,7 @@ events
 512+2147483648 midi 90 3c 64
 1000 target 1 oscillator.1.level -6.5
 1000 target every pan -6.5
+24000 position 96
 48000 notes_off
 end
 )");
@@ -183,12 +192,15 @@ TEST(Journal, TellsWhatIsWrongAndWhere) {
       {whole + "-1 notes_off\n",
        "t:10:1: error: a time must be here: a sample, or SAMPLE+FRACTION in 2^-32"},
       {whole + "1 play\n",
-       "t:10:3: error: 'midi', 'tempo', 'bank', 'notes_off' or 'target' must be here after a time"},
+       "t:10:3: error: 'midi', 'tempo', 'position', 'bank', 'notes_off' or 'target' must be here "
+       "after a time"},
       {whole + "1 midi 90 3c\n", "t:10:13: error: a byte in two hexadecimal digits must be here"},
       {whole + "1 midi 90  3c 40\n",
        "t:10:11: error: a byte in two hexadecimal digits must be here"},
       {whole + "1 notes_off now\n", "t:10:13: error: there is more on the line than belongs there"},
       {whole + "9 notes_off\n8 notes_off\n", "t:11:1: error: this is earlier than the line before"},
+      {whole + "1 position -6\n",
+       "t:10:12: error: the song position in MIDI clocks must be 0 to 9007199254740992"},
       {whole + "1 bank 1\n",
        "t:10:8: error: there is no bank 1; the journal holds 1, counted from 0"},
       {whole + "1 target 17 amp 0\n", "t:10:10: error: a channel must be 1 to 16"},

@@ -126,6 +126,8 @@ TEST(LiveEngine, ExactEventsOfEveryKindPlayAsOfflineFractionsOfASampleIncluded) 
     event.midi.bytes[1] = i % 2 == 0 ? key : static_cast<std::uint8_t>(key - 1);
     event.midi.bytes[2] = 100;
     if (i % 10 == 5) event.kind = Event::Kind::tempo;
+    if (i % 10 == 7) event.kind = Event::Kind::position;
+    event.song_clocks = static_cast<std::int64_t>(i);
     if (i % 10 == 9) event.kind = Event::Kind::all_notes_off;
     events.push_back(event);
   }

@@ -74,6 +74,10 @@ LiveMessage random_message(Dice& dice, std::int64_t time_ns) {
       out.index = static_cast<std::uint16_t>(dice.below(kSlotCount + 3));
       out.number = dice.below(2000) / 500.0 - 2;
       break;
+    case 6:
+      out.kind = LiveMessage::Kind::position;
+      out.number = dice.below(20000);
+      break;
     default:
       break;
   }

@@ -11,70 +11,14 @@
 
 #include "knotwave/base/random.h"
 
+#include "clock_cable.h"
 #include "support/allocation_count.h"
 #include "support/seed.h"
 
 namespace knotwave::engine {
 namespace {
 
-constexpr double kRate = 48000;
-
-base::SampleTime at(double seconds) {
-  const double samples = seconds * kRate, whole = std::floor(samples);
-  return {static_cast<std::int64_t>(whole), static_cast<std::uint32_t>((samples - whole) * 0x1p32)};
-}
-
-/// Sends messages and keeps the tempos that come back.
-class Cable {
- public:
-  Cable() { clock.reset(kRate); }
-
-  bool send(double time_s, std::uint8_t status, std::uint8_t data1 = 0, std::uint8_t data2 = 0) {
-    base::MidiEvent event;
-    event.time = at(time_s);
-    event.bytes[0] = status;
-    event.bytes[1] = data1;
-    event.bytes[2] = data2;
-    const bool has_tempo = clock.handle(event);
-    if (has_tempo) {
-      const Event tempo = clock.tempo_event();
-      EXPECT_EQ(tempo.kind, Event::Kind::tempo);
-      EXPECT_EQ(tempo.time(), event.time);
-      tempos.push_back({time_s, 6e7 / tempo.microseconds_per_quarter});
-    }
-    return has_tempo;
-  }
-
-  /// Clocks at a tempo that is a function of the time, jittered by `noise_s` (rms), until end_s.
-  void run(double end_s, const std::function<double(double)>& bpm, double noise_s = 0) {
-    for (; due_s < end_s; due_s += 60 / (24 * bpm(due_s))) {
-      send(due_s + noise_s * normal(), 0xF8);
-      ++sent;
-      if (watch) watch(due_s);
-    }
-  }
-  void run(double end_s, double bpm, double noise_s = 0) {
-    run(
-        end_s, [bpm](double) { return bpm; }, noise_s);
-  }
-
-  /// Gaussian, by Box and Muller.
-  double normal() {
-    const double radius = std::sqrt(-2 * std::log(1 - random.unit(next++)));
-    return radius * std::cos(2 * std::numbers::pi * random.unit(next++));
-  }
-
-  struct Tempo {
-    double time_s, bpm;
-  };
-  MidiClock clock;
-  std::vector<Tempo> tempos;
-  std::function<void(double)> watch;
-  double due_s = 0.1;
-  std::int64_t sent = 0;
-  base::RandomStream random{support::test_seed(), 0, 0};
-  std::uint64_t next = 0;
-};
+using namespace scenes;  // NOLINT: the words of these tests
 
 /// Clocks that an engine playing `tempos` has gone through at a time, from the first on.
 double clocks_played(const std::vector<Cable::Tempo>& tempos, double time_s) {
@@ -317,7 +261,7 @@ TEST(MidiClock, TheSameClocksLaterGiveTheSameTempos) {
       const auto noise = static_cast<std::int64_t>(random.bits(static_cast<std::uint64_t>(i)) % 96);
       event.time = {offset + i * std::int64_t{1000} + noise, 12345};
       event.bytes[0] = 0xF8;
-      if (clock.handle(event)) tempos.push_back(clock.tempo_event().microseconds_per_quarter);
+      if (clock.handle(event).tempo) tempos.push_back(clock.tempo_event().microseconds_per_quarter);
     }
     return tempos;
   };
@@ -345,7 +289,7 @@ TEST(MidiClock, AnyMessagesAtAnyTimesGiveATempoInItsRange) {
       event.bytes[0] = kind < 6 ? kOthers[kind] : std::uint8_t{0xF8};
       event.bytes[1] = static_cast<std::uint8_t>(random.bits(next++) & 127);
       bool has_tempo = false;
-      allocations += support::allocations_in([&] { has_tempo = clock.handle(event); });
+      allocations += support::allocations_in([&] { has_tempo = clock.handle(event).tempo; });
       if (has_tempo) {
         ASSERT_GE(clock.tempo_event().microseconds_per_quarter, 58800u);
         ASSERT_LE(clock.tempo_event().microseconds_per_quarter, 6130000u);

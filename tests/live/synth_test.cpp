@@ -13,6 +13,8 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "knotwave/base/file.h"
+#include "knotwave/engine/journal.h"
 #include "knotwave/io/audio_device.h"
 #include "knotwave/io/midi_file.h"
 #include "knotwave/io/sound_file.h"
@@ -123,6 +125,46 @@ TEST_F(SynthUnderJack, KeyboardsOfJackAreConnectedByItselfAndHeardExactToTheSamp
                 score[i].after - score[0].after);
     }
   }
+}
+
+TEST_F(SynthUnderJack, AClocksSongIsTakenUpAtTheFrameOfItsClock) {
+  SynthProcess synth({"small.toml", "--json-status", "--record", "take.wav"}, here());
+  ASSERT_TRUE(synth.says("recording take.wav")) << synth.err();
+  std::vector<JackMidiSender::Message> score;
+  const auto note = [&](std::int64_t frame) { score.push_back(at(frame, {0x90, 60, 100})); };
+  for (std::int64_t clock = 0; clock < 96; ++clock) {  // 1000 frames each: 120 quarters a minute
+    const std::int64_t frame = 1000 * clock;
+    if (clock == 20) score.push_back(at(frame - 300, {0xFA}));
+    if (clock == 50) score.push_back(at(frame - 300, {0xFC}));
+    if (clock == 60) score.push_back(at(frame - 300, {0xFB}));
+    if (clock == 70) score.push_back(at(frame - 300, {0xFC}));
+    if (clock == 70) score.push_back(at(frame - 200, {0xF2, 16, 1}));
+    if (clock == 80) score.push_back(at(frame - 300, {0xFB}));
+    if (clock == 20 || clock == 60 || clock == 80) note(frame);
+    score.push_back(at(frame, {0xF8}));
+  }
+  JackMidiSender sender(kMidiIn, score);
+  ASSERT_TRUE(sender.is_connected());
+  ASSERT_TRUE(sender.wait_until_sent(20));
+  EXPECT_LT(seconds_until([&] { return synth.number("clock_bpm") > 0; }, 5), 5);
+  synth.signal(SIGTERM);
+  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+  expect_rendered_again("take", synth.err());
+
+  const auto text = base::read_file(file("take.journal"), std::size_t{1} << 26);
+  ASSERT_TRUE(text.has_value()) << text.error().to_string();
+  const auto journal = engine::read_journal(*text, "take.journal");
+  ASSERT_TRUE(journal.has_value()) << journal.error().to_string();
+  std::vector<std::pair<std::int64_t, double>> notes_and_positions;
+  std::int64_t note_sample = 0;
+  for (const engine::JournalRecord& record : journal->records) {
+    if (record.kind == engine::Event::Kind::midi) note_sample = record.time.sample;
+    if (record.kind != engine::Event::Kind::position) continue;
+    EXPECT_EQ(record.time.fraction, 0U);
+    notes_and_positions.emplace_back(record.time.sample - note_sample, record.number);
+  }
+  EXPECT_THAT(notes_and_positions, testing::ElementsAre(testing::Pair(0, 0), testing::Pair(0, 30),
+                                                        testing::Pair(0, 6 * (16 + 128))));
 }
 
 TEST_F(SynthUnderJack, OnlyTheInputsThatWereNamedAreConnected) {

@@ -29,7 +29,7 @@ TEST_P(MidiInTheGate, StreamClockAndLearntKnobs) {
       base::MidiEvent event = stream.message();
       event.time = {static_cast<std::int64_t>(i * 125), 0};
       ++messages;
-      tempos += static_cast<int>(clock.handle(event));
+      tempos += static_cast<int>(clock.handle(event).tempo);
       changes += learn->translate(event).count;
       if (bits % 64 == 0) learn->learn(70 + static_cast<int>(bits >> 8) % 10);
       if (bits % 97 == 0) learn->controllers_went_back();

@@ -36,9 +36,10 @@ class Lfo {
 
   /// Values at samples first.. of engine time, none before the start. `cycle` is the curve over one
   /// cycle (any domain, read from its start to its end). rate_factor [n] multiplies the speed, or
-  /// empty. `tempo_beats` [n] is the song position in quarter notes at each sample, used when
-  /// spec.beats > 0 (else, or without it, rate_hz counts); a key-synced LFO then starts on a whole
-  /// sample. NaN in either stands still. [audio]
+  /// empty. `tempo_beats` [n] is the song position in quarter notes at each sample (for a
+  /// key-synced LFO those played so far, which never jump), used when spec.beats > 0 (else, or
+  /// without it, rate_hz counts); a key-synced LFO then starts on a whole sample. NaN in either
+  /// stands still. [audio]
   void render(const LfoSpec& spec, const curves::CurveProgram& cycle, std::int64_t first,
               std::span<const double> rate_factor, std::span<const double> tempo_beats,
               std::span<double> out) KNOTWAVE_RT {
@@ -49,6 +50,13 @@ class Lfo {
   void render(const LfoSpec& spec, const curves::CurveProgram& cycle, std::int64_t first,
               std::span<const double> rate_factor, std::span<const double> tempo_beats,
               std::span<const double* const> controls, std::span<double> out) KNOTWAVE_RT;
+
+  /// The song position jumps before the next sample rendered: that alone says where the LFO is, and
+  /// what rate_factor has added is over. [audio]
+  void song_moved() KNOTWAVE_RT {
+    extra_ = {};
+    has_beats_ = false;
+  }
 
  private:
   /// 128 bits: whole cycles and the phase within one, modulo 2^64 cycles.

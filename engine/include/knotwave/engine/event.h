@@ -10,8 +10,10 @@ namespace knotwave::engine {
 
 class BankProgram;
 
+inline constexpr int kSongClocksPerQuarter = 24;
+
 struct Event {
-  enum class Kind : std::uint8_t { midi, tempo, install_bank, all_notes_off, set_target };
+  enum class Kind : std::uint8_t { midi, tempo, install_bank, all_notes_off, set_target, position };
   /// The slot that means every slot of the channel.
   static constexpr int kEverySlot = 0xFFFF;
   Kind kind = Kind::midi;
@@ -23,6 +25,8 @@ struct Event {
   /// Kind::set_target: in the voices of all channels instead, beside what is added by channel. A
   /// system reset leaves it; kEverySlot takes back only these numbers.
   bool every_channel = false;
+  /// Kind::position: where the song is, in MIDI clocks of 1/24 quarter note since its start.
+  std::int64_t song_clocks = 0;
 
   base::SampleTime time() const KNOTWAVE_RT { return midi.time; }
 };

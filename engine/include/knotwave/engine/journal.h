@@ -22,7 +22,7 @@ struct JournalRecord {
   std::uint8_t sysex_size = 0;
   bool every_channel = false;  ///< set_target
   std::uint32_t index = 0;     ///< set_target: the slot; install_bank: which of Journal::banks
-  double number = 0;           ///< tempo, set_target
+  double number = 0;           ///< tempo, set_target, position
   std::array<std::uint8_t, 24> sysex{};
 };
 

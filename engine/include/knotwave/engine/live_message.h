@@ -18,6 +18,7 @@ struct LiveMessage {
     tempo,       ///< number: microseconds per quarter note
     set_target,  ///< number is added to slot `index` (map_slots.h) of channel bytes[0] & 15
     all_notes_off,
+    position,  ///< number: where the song is, in whole MIDI clocks (24 a quarter note)
   };
 
   std::int64_t time_ns = 0;  ///< when it was heard, by the steady clock; 0: as soon as can be

@@ -33,21 +33,38 @@ struct MidiClockStatus {
 };
 
 /// One clock, one thread. Whoever plays hands it every message of one cable and hands the engine
-/// the tempo events that come back:
-///   if (clock.handle(message)) engine_events.push_back(clock.tempo_event());
+/// the events that come back:
+///   const auto news = clock.handle(message);
+///   if (news.tempo) engine_events.push_back(clock.tempo_event());
+///   if (news.position) engine_events.push_back(clock.position_event());
 class MidiClock {
  public:
+  /// Which events a message made new.
+  struct News {
+    bool tempo = false, position = false;
+  };
+
   /// Forgets everything. [control, stopped]
   void reset(double rate_hz);
 
   /// F8, FA, FB, FC and F2 by their event.time; all else is ignored. Times may not go back by more
-  /// than jitter; where they do, the loop begins again. True: tempo_event() is new. That is so
-  /// where the tempo left the one in force by more than 0.1 % and three times the loop's own
-  /// jitter, and where what was handed out ran away from the clock by more than 2 ms, which it
-  /// makes up for within about eight quarters. [audio] About 30 operations.
-  bool handle(const base::MidiEvent& event) KNOTWAVE_RT;
+  /// than jitter; where they do, the loop begins again. [audio] About 30 operations.
+  ///
+  /// The tempo is new where it left the one in force by more than 0.1 % and three times the loop's
+  /// own jitter, and where what was handed out ran away from the clock by more than 2 ms, which it
+  /// makes up for within about eight quarters.
+  ///
+  /// The position is new at the clock that counts first after Start, Continue or a song position
+  /// pointer of a song that runs (MIDI 1.0: the first F8 behind FA is the song's beginning), at the
+  /// first clock after a pause, at the first tempo of a loop that began again, and behind
+  /// tell_again(). Stop changes nothing: the tempo goes on, and Continue puts the song back.
+  News handle(const base::MidiEvent& event) KNOTWAVE_RT;
   /// The tempo in force from the last clock on, 10 to 1000 bpm. Pauses leave it as it is.
   Event tempo_event() const KNOTWAVE_RT;
+  /// Where the song was at the clock that made the position new.
+  Event position_event() const KNOTWAVE_RT;
+  /// Whoever plays has forgotten what it was told: the next clock tells it anew. [audio]
+  void tell_again() KNOTWAVE_RT;
 
   /// Some clock came within the last second before `now`.
   bool is_present(base::SampleTime now) const KNOTWAVE_RT;
@@ -59,13 +76,14 @@ class MidiClock {
   static constexpr int kDoubtedClocks = 12;  ///< a jump of the tempo is believed after as many
 
  private:
-  bool clock(base::SampleTime time) KNOTWAVE_RT;
+  News clock(base::SampleTime time) KNOTWAVE_RT;
   void begin(base::SampleTime time) KNOTWAVE_RT;
   void lock(base::SampleTime time, double period) KNOTWAVE_RT;
-  bool take(base::SampleTime time) KNOTWAVE_RT;
+  bool take(base::SampleTime time, bool begins) KNOTWAVE_RT;
   void follow(double error) KNOTWAVE_RT;
   void doubt(base::SampleTime time, std::int64_t assumed, bool fits) KNOTWAVE_RT;
   void play(std::int64_t clocks) KNOTWAVE_RT;
+  bool place(base::SampleTime time) KNOTWAVE_RT;
   bool decide(base::SampleTime time) KNOTWAVE_RT;
   double omega() const KNOTWAVE_RT;
   double jitter() const KNOTWAVE_RT;  ///< samples
@@ -101,6 +119,9 @@ class MidiClock {
   // The song.
   bool is_running_ = false, awaits_clock_ = false;
   std::int64_t position_ = 0;  ///< of the next clock
+  bool must_place_ = false, must_tell_ = false;
+  std::int64_t placed_ = 0;
+  base::SampleTime place_time_;
   std::int64_t clocks_ = 0, missing_ = 0, surplus_ = 0, restarts_ = 0;
 };
 

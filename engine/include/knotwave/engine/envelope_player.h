@@ -41,7 +41,8 @@ class EnvelopePlayer {
   ~EnvelopePlayer();
 
   /// Everything that happens from now() on: notes, controllers, tempo (Event::Kind::tempo), start,
-  /// stop, song position (F2, or Event::Kind::position at once). Times rise; an event before now() is heard now. [audio]
+  /// stop, song position (F2, or Event::Kind::position at once). Times rise; an event before now()
+  /// is heard now. [audio]
   ///
   /// Start (FA) puts the song at 0: at the first clock (F8) that follows where clocks came within
   /// the last second, else at once. Stop (FC) closes the gate of a clock division, Continue (FB)

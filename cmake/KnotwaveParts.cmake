@@ -69,3 +69,18 @@ if(KNOTWAVE_BUILD_PLUGINS AND NOT KNOTWAVE_WITH_CLAP STREQUAL "OFF")
     message(STATUS "Knotwave: CLAP not found, built without (Debian: dpf-source)")
   endif()
 endif()
+
+# DPF is compiled into the LV2 and VST3 plugins, from its sources.
+set(KNOTWAVE_HAVE_DPF FALSE)
+if(KNOTWAVE_BUILD_PLUGINS AND UNIX AND NOT APPLE AND NOT KNOTWAVE_WITH_DPF STREQUAL "OFF")
+  find_path(KNOTWAVE_DPF_FOLDER distrho/DistrhoPluginMain.cpp
+    PATHS /usr/share/dpf /usr/local/share/dpf NO_DEFAULT_PATH)
+  if(KNOTWAVE_DPF_FOLDER)
+    set(KNOTWAVE_HAVE_DPF TRUE)
+    message(STATUS "Knotwave: DPF in ${KNOTWAVE_DPF_FOLDER}")
+  elseif(KNOTWAVE_WITH_DPF STREQUAL "ON")
+    message(FATAL_ERROR "KNOTWAVE_WITH_DPF is ON, but KNOTWAVE_DPF_FOLDER names no DPF (Debian: dpf-source)")
+  else()
+    message(STATUS "Knotwave: DPF not found, no LV2 and VST3 plugins (Debian: dpf-source)")
+  endif()
+endif()

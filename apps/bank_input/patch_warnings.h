@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "knotwave/engine/envelope_patch.h"
 #include "knotwave/engine/patch.h"
 
 namespace knotwave::bank_input {
@@ -11,5 +12,7 @@ namespace knotwave::bank_input {
 /// `file.toml:30:1: warning: ...`, one for each map that moves a curve which nothing plays, or
 /// a free number which no other map reads.
 std::vector<std::string> patch_warnings(const engine::PatchSpec& patch);
+/// The same of an envelope patch, whose outputs play curves and read free numbers as well.
+std::vector<std::string> patch_warnings(const engine::EnvelopePatchSpec& patch);
 
 }  // namespace knotwave::bank_input

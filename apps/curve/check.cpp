@@ -5,6 +5,7 @@
 #include "knotwave/engine/midi_learn.h"
 
 #include "bank_input/bank_input.h"
+#include "bank_input/patch_warnings.h"
 #include "curve_input.h"
 #include "verbs.h"
 
@@ -24,6 +25,9 @@ Result<std::string> checked_envelope_patch(const std::string& path) {
   if (!spec) return spec.error();
   const auto program = engine::EnvelopePatchProgram::create(*spec);
   if (!program) return program.error();
+  for (const auto& warning : bank_input::patch_warnings(*spec)) {
+    std::fprintf(stderr, "%s\n", warning.c_str());
+  }
   return "envelope patch, " + count_of(spec->patch.curves) + ", " +
          count_of(spec->patch.maps.size(), "map") + ", " + count_of(spec->outputs.size(), "output");
 }

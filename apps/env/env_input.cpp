@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "bank_input/patch_warnings.h"
+
 namespace knotwave::env {
 namespace {
 
@@ -70,6 +72,9 @@ Result<EnvInput> read_input(const EnvOptions& options) {
   for (const std::string& path : options.patches) {
     auto spec = engine::read_envelope_patch(path);
     if (!spec) return std::move(spec).error();
+    for (std::string& line : bank_input::patch_warnings(*spec)) {
+      input.warnings.push_back(std::move(line));
+    }
     redirect(options, *spec);
     auto program = engine::EnvelopePatchProgram::create(*spec);
     if (!program) {

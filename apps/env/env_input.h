@@ -14,6 +14,7 @@ namespace knotwave::env {
 
 struct EnvInput {
   std::vector<std::unique_ptr<const engine::EnvelopePatchProgram>> programs;
+  std::vector<std::string> warnings;  ///< what in the patches can hardly be meant
 
   std::vector<const engine::EnvelopePatchProgram*> patches() const;
   bool has_osc() const;

@@ -62,6 +62,9 @@ int run(const EnvOptions& options) {
   if (options.list) return print(kProgram, device_list());
   const auto input = read_input(options);
   if (!input) return say(input.error());
+  for (const std::string& line : input->warnings) {
+    if (!options.quiet) std::fprintf(stderr, "%s\n", io::printable(line, 4096).c_str());
+  }
   if (options.dry_run.empty()) return play(options, *input);
   const auto lines = run_offline(options, *input);
   return lines ? print(kProgram, *lines) : say(lines.error());

@@ -24,8 +24,8 @@ Error fault(const base::Node& at, std::string_view source, ErrorCode code, std::
 Error missing_first_lines(const base::Node& root, std::string_view source, std::string_view key) {
   return fault(root, source, ErrorCode::missing_key,
                "'" + std::string(key) +
-                   "' is missing; a file begins with format = 1 and kind = \"curve\", \"patch\" "
-                   "or \"bank\"");
+                   "' is missing; a file begins with format = 1 and kind = \"curve\", \"patch\", "
+                   "\"bank\" or \"envelope\"");
 }
 
 template <class Item>

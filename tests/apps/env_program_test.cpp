@@ -189,6 +189,28 @@ TEST(EnvProgram, WhatMakesNoSenseIsUsage) {
   }
 }
 
+TEST(EnvProgram, AFreeNumberThatNobodyReadsIsTold) {
+  const ScratchFolder folder;
+  const std::string head =
+      "format = 1\nkind = \"envelope\"\n[curves.c]\ndegree = 1\npoints = [0, 1]\n"
+      "[envelopes.e]\ncurve = \"c\"\n[[maps]]\nfrom = \"e\"\nto = \"free.x\"\n[[outputs]]\nto = "
+      "\"cc1\"\n";
+  std::ofstream(folder.file("idle.toml")) << head + "from = \"e\"\n";
+  std::ofstream(folder.file("read.toml")) << head + "from = \"free.x\"\n";
+  const std::string warning =
+      "idle.toml:10:6: warning: this map moves 'free.x', which no map and no output reads";
+  const std::string song = score("first-light");
+  EXPECT_THAT(env_program({folder.file("idle.toml"), "--dry-run", song}).err, HasSubstr(warning));
+  EXPECT_EQ(env_program({folder.file("read.toml"), "--dry-run", song}).err, "");
+  EXPECT_EQ(env_program({folder.file("idle.toml"), "--dry-run", song, "--quiet"}).err, "");
+  const ProgramRun check = run_program({"knotwave-curve", "check", folder.file("idle.toml")});
+  EXPECT_EQ(check.exit_code, 0);
+  EXPECT_THAT(check.err, HasSubstr(warning));
+  std::ofstream(folder.file("bare.toml")) << "format = 1\n";
+  EXPECT_THAT(run_program({"knotwave-curve", "check", folder.file("bare.toml")}).err,
+              HasSubstr("or \"envelope\""));
+}
+
 TEST(EnvProgram, FaultsOfFilesAreToldWithTheirPlace) {
   const ScratchFolder folder;
   std::ofstream(folder.file("broken.toml")) << "format = 1\nkind = \"envelope\"\nnane = \"x\"\n";

@@ -23,7 +23,7 @@ namespace {
 using base::MidiEvent;
 
 constexpr double kRate = 48000;
-constexpr std::int64_t kStormEnd = 48000, kQuietEnd = 48000 * 4;
+constexpr std::int64_t kStormEnd = 48000, kQuietEnd = 120000;
 
 class Dice {
  public:
@@ -66,7 +66,8 @@ void add_curves(Dice& dice, RandomPatch& patch) {
   patch.comes_to_hold = false;
 }
 
-void add_output(Dice& dice, RandomPatch& patch, int index, bool has_keys, bool follows_notes) {
+void add_output(Dice& dice, RandomPatch& patch, int index, int kind, bool has_keys,
+                bool follows_notes) {
   const bool has_lfo = !patch.comes_to_hold;
   patch.text += "[[outputs]]\nfrom = '" +
                 std::string(has_lfo && dice.one_in(2) ? "free.x"
@@ -74,7 +75,7 @@ void add_output(Dice& dice, RandomPatch& patch, int index, bool has_keys, bool f
                                                       : "c1") +
                 "'\n";
   int top = 127, bottom = 0;
-  switch (dice.below(7)) {
+  switch (kind) {
     case 0:
       patch.text += "to = 'bend'\n";
       bottom = -8192;
@@ -132,14 +133,17 @@ RandomPatch random_patch(Dice& dice) {
     patch.text += "from = '" + from + "'\n";
     if (from == "clock") patch.text += "beats = 0.25\ngate = " + number(dice.unit()) + "\n";
   }
-  if (dice.one_in(5)) patch.text += "program = 1\n";
+  if (dice.one_in(5)) patch.text += "program = 1\nchannel = 1\n";
   const std::string wire = dice.of(std::array{"din", "din", "usb", "none"});
   patch.text += "[ports.synth]\nwire = '" + wire + "'\n";
   if (wire == "din" && dice.one_in(2)) patch.text += "running_status = false\n";
   add_curves(dice, patch);
   const int outputs = 1 + dice.below(4);
   const bool follows = is_mpe || (is_poly && dice.one_in(2));
-  for (int i = 0; i < outputs; ++i) add_output(dice, patch, i, is_note, follows && i == 0);
+  const int first_kind = dice.below(6);  // no two outputs go to the same place
+  for (int i = 0; i < outputs; ++i) {
+    add_output(dice, patch, i, (first_kind + i) % 6, is_note, follows);
+  }
   if (dice.one_in(3)) {
     patch.text += "[[events]]\nenvelope = 'c0'\nat = 'end'\nnote = 37\nchannel = 12\n";
   }
@@ -461,11 +465,11 @@ void try_cases(int count) {
 }
 
 TEST(RandomGenerator, KeepsItsBudgetEndsItsNotesAndRestsInAnySplit) {
-  try_cases(support::test_count(16));
+  try_cases(support::test_count(12));
 }
 
 TEST(RandomGeneratorStress, KeepsItsBudgetEndsItsNotesAndRestsInAnySplit) {
-  try_cases(support::test_count(1000));
+  try_cases(support::test_count(300));
 }
 
 }  // namespace

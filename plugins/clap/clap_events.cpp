@@ -75,8 +75,12 @@ const Event* as(const clap_event_header& header) KNOTWAVE_RT {
 
 void add_clap_transport(Instrument& instrument, const clap_event_transport& transport,
                         std::int64_t sample) KNOTWAVE_RT {
-  if ((transport.flags & CLAP_TRANSPORT_HAS_TEMPO) == 0) return;
-  instrument.add_tempo(transport.tempo, sample);
+  Transport told;
+  if ((transport.flags & CLAP_TRANSPORT_HAS_TEMPO) != 0) told.beats_per_minute = transport.tempo;
+  told.has_position = (transport.flags & CLAP_TRANSPORT_HAS_BEATS_TIMELINE) != 0;
+  told.quarters = static_cast<double>(transport.song_pos_beats) / CLAP_BEATTIME_FACTOR;
+  told.is_playing = (transport.flags & CLAP_TRANSPORT_IS_PLAYING) != 0;
+  instrument.add_transport(told, sample);
 }
 
 void add_clap_event(Instrument& instrument, const clap_event_header& header) KNOTWAVE_RT {

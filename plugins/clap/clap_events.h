@@ -11,7 +11,7 @@ namespace knotwave::plugins {
 void add_clap_event(Instrument& instrument, const clap_event_header& header) KNOTWAVE_RT;
 /// Only parameters, from the next block on. [any]
 void set_clap_parameters(Instrument& instrument, const clap_input_events& events) KNOTWAVE_RT;
-/// Tempo at the block's begin. [audio]
+/// Tempo and place in the song from that sample on. [audio]
 void add_clap_transport(Instrument& instrument, const clap_event_transport& transport,
                         std::int64_t sample) KNOTWAVE_RT;
 

@@ -52,6 +52,18 @@ Event event_of(const MidiEvent& midi) {
   return event;
 }
 
+kw::Transport transport_of(const TimePosition& position) {
+  kw::Transport transport;
+  const TimePosition::BarBeatTick& bbt = position.bbt;
+  if (!bbt.valid || !(bbt.ticksPerBeat > 0) || !(bbt.beatType > 0)) return transport;
+  transport.beats_per_minute = bbt.beatsPerMinute;
+  transport.is_playing = position.playing;
+  transport.has_position = true;
+  const double beats = (bbt.barStartTick + bbt.tick) / bbt.ticksPerBeat + bbt.beat - 1;
+  transport.quarters = beats * 4 / static_cast<double>(bbt.beatType);
+  return transport;
+}
+
 class DpfInstrument : public Plugin {
  public:
   DpfInstrument()
@@ -135,8 +147,7 @@ class DpfInstrument : public Plugin {
       return;
     }
     instrument_.begin({outputs[0], frames}, {outputs[1], frames});
-    const TimePosition& position = getTimePosition();
-    if (position.bbt.valid) instrument_.add_tempo(position.bbt.beatsPerMinute, 0);
+    instrument_.add_transport(transport_of(getTimePosition()), 0);
     for (std::uint32_t i = 0; i < count; ++i) {
       if (midi[i].size > 0) instrument_.add(event_of(midi[i]));
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "knotwave/engine/channel_state.h"
 #include "knotwave/plugins/factory.h"
@@ -14,6 +15,8 @@ namespace {
 using engine::Event;
 
 constexpr double kLeastBpm = 1, kMostBpm = 1000;
+constexpr double kJumpQuarters = 1e-3;
+constexpr double kMostQuarters = 1e9;
 /// Nothing comes in but through process(): the rings of the live engine stay empty.
 constexpr int kNoMessages = 16;
 constexpr int kNoJournal = 16;
@@ -96,6 +99,7 @@ Result<void> Instrument::activate(double rate_hz) {
   for (std::size_t i = 0; i < parameters().size(); ++i) heard_[i] = parameters()[i].initial;
   has_news_.store(true);
   tempo_microseconds_ = 500000;
+  is_playing_ = is_song_due_ = false;
   return {};
 }
 
@@ -131,7 +135,22 @@ void Instrument::begin(std::span<float> left, std::span<float> right) KNOTWAVE_R
   }
 }
 
+/// The song's position goes before what comes later.
 void Instrument::push(const Event& event) KNOTWAVE_RT {
+  if (song_due_ <= event.time()) place_song();
+  place(event);
+}
+
+void Instrument::place_song() KNOTWAVE_RT {
+  if (!std::exchange(is_song_due_, false)) return;
+  Event song;
+  song.kind = Event::Kind::position;
+  song.midi.time = song_due_;
+  song.song_clocks = song_clocks_;
+  place(song);
+}
+
+void Instrument::place(const Event& event) KNOTWAVE_RT {
   if (event_count_ == events_.size()) {
     const auto at = static_cast<std::size_t>(std::max<std::int64_t>(event.time().sample, 0));
     render_until(std::min(std::max(at, done_ + 1), left_.size()));
@@ -152,16 +171,39 @@ void Instrument::add_parameter(std::size_t place, double value, std::int64_t sam
   push(parameter_event(place, heard_[place], {sample, 0}));
 }
 
-void Instrument::add_tempo(double beats_per_minute, std::int64_t sample) KNOTWAVE_RT {
-  if (!(beats_per_minute >= kLeastBpm && beats_per_minute <= kMostBpm)) return;
-  const auto microseconds = static_cast<std::uint32_t>(std::floor(6e7 / beats_per_minute + 0.5));
-  if (microseconds == tempo_microseconds_) return;
-  tempo_microseconds_ = microseconds;
-  Event event;
-  event.kind = Event::Kind::tempo;
-  event.midi.time.sample = sample;
-  event.microseconds_per_quarter = microseconds;
-  push(event);
+void Instrument::add_transport(const Transport& transport, std::int64_t sample) KNOTWAVE_RT {
+  const double bpm = transport.beats_per_minute;
+  if (bpm >= kLeastBpm && bpm <= kMostBpm) {
+    const auto microseconds = static_cast<std::uint32_t>(std::floor(6e7 / bpm + 0.5));
+    if (microseconds != tempo_microseconds_) {
+      tempo_microseconds_ = microseconds;
+      Event event;
+      event.kind = Event::Kind::tempo;
+      event.midi.time.sample = sample;
+      event.microseconds_per_quarter = microseconds;
+      push(event);
+    }
+  }
+  follow_song(transport, sample);
+}
+
+void Instrument::follow_song(const Transport& transport, std::int64_t sample) KNOTWAVE_RT {
+  const double samples_a_quarter = tempo_microseconds_ * 1e-6 * live_->rate_hz();
+  const double expected = quarters_ + static_cast<double>(sample) / samples_a_quarter;
+  const bool was_playing = is_playing_;
+  is_playing_ = transport.is_playing && transport.has_position && transport.quarters >= 0 &&
+                transport.quarters <= kMostQuarters;
+  if (!is_playing_) return;
+  quarters_ = transport.quarters - static_cast<double>(sample) / samples_a_quarter;
+  if (was_playing && std::abs(transport.quarters - expected) <= kJumpQuarters) return;
+  const double clocks = std::ceil(transport.quarters * engine::kSongClocksPerQuarter - 1e-6);
+  const double wait = std::max(
+      (clocks / engine::kSongClocksPerQuarter - transport.quarters) * samples_a_quarter, 0.0);
+  const double whole = std::floor(wait);
+  song_due_ = {sample + static_cast<std::int64_t>(whole),
+               static_cast<std::uint32_t>((wait - whole) * 0x1p32)};
+  song_clocks_ = static_cast<std::int64_t>(clocks);
+  is_song_due_ = true;
 }
 
 void Instrument::render_until(std::size_t sample) KNOTWAVE_RT {
@@ -173,7 +215,13 @@ void Instrument::render_until(std::size_t sample) KNOTWAVE_RT {
   done_ = sample;
 }
 
-void Instrument::render() KNOTWAVE_RT { render_until(left_.size()); }
+void Instrument::render() KNOTWAVE_RT {
+  const auto frames = static_cast<std::int64_t>(left_.size());
+  if (song_due_.sample < frames) place_song();
+  render_until(left_.size());
+  song_due_.sample -= frames;
+  quarters_ += static_cast<double>(frames) / (tempo_microseconds_ * 1e-6 * live_->rate_hz());
+}
 
 /// Notes end within 5 ms, which nobody hears.
 void Instrument::reset() KNOTWAVE_RT {

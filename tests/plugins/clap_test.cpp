@@ -120,6 +120,87 @@ TEST(Clap, SoundsAsKnotwaveRenderOfTheSameEventsToTheBit) {
   }
 }
 
+std::string song_patch() {
+  return R"(format = 1
+kind = "patch"
+name = "wobble"
+[curves.gate]
+degree = 1
+points = [1, 1]
+[curves.wave]
+degree = 2
+periodic = true
+points = [0, 1, 0, -1]
+[oscillators.a]
+wave = "sine"
+[envelopes.amp]
+curve = "gate"
+[lfos.slow]
+curve = "wave"
+beats = 1
+mode = "free"
+[[maps]]
+from = "slow"
+to = "pitch"
+depth = 3
+)";
+}
+
+clap_event_transport transport(double bpm, double quarters, bool is_playing) {
+  clap_event_transport told{};
+  told.header = {sizeof told, 0, CLAP_CORE_EVENT_SPACE_ID, CLAP_EVENT_TRANSPORT, 0};
+  told.flags = CLAP_TRANSPORT_HAS_TEMPO | CLAP_TRANSPORT_HAS_BEATS_TIMELINE |
+               (is_playing ? std::uint32_t{CLAP_TRANSPORT_IS_PLAYING} : 0u);
+  told.tempo = bpm;
+  told.song_pos_beats = static_cast<clap_beattime>(std::llround(quarters * CLAP_BEATTIME_FACTOR));
+  return told;
+}
+
+TEST(Clap, TheHostsTempoAndPlaceInTheSongMoveWhatCountsBeats) {
+  constexpr std::size_t kBlock = 480, kBlocks = 100;
+  engine::Journal journal;
+  journal.banks.push_back({"wobble.toml", {{"wobble.toml", song_patch()}}, {}});
+  const auto played = plugin();
+  ASSERT_TRUE(played->load(engine::write_journal(journal)));
+  ASSERT_TRUE(played->start(48000, kBlock));
+  StereoSound all, part;
+  const double quarters_a_block = kBlock / 48000.0 * 150 / 60;
+  for (std::size_t i = 0; i < kBlocks; ++i) {  // begins to play in block 10 and goes back in 50
+    const double at = i < 50 ? 2.51 + (static_cast<double>(i) - 10) * quarters_a_block
+                             : 0.25 + (static_cast<double>(i) - 50) * quarters_a_block;
+    const clap_event_transport now = transport(150, i < 10 ? 2.51 : at, i >= 10);
+    std::vector<ClapEvent> events;
+    if (i == 3) events.push_back(clap_note(7, CLAP_EVENT_NOTE_ON, 0, 60, 1));
+    ASSERT_NE(played->process(events, kBlock, part, &now), CLAP_PROCESS_ERROR);
+    all.left.insert(all.left.end(), part.left.begin(), part.left.end());
+    all.right.insert(all.right.end(), part.right.begin(), part.right.end());
+  }
+  const auto add = [&](engine::Event::Kind kind, double sample) -> engine::JournalRecord& {
+    engine::JournalRecord& record = journal.records.emplace_back();
+    record.kind = kind;
+    record.time.sample = static_cast<std::int64_t>(sample);
+    record.time.fraction = static_cast<std::uint32_t>((sample - std::floor(sample)) * 4294967296.0);
+    return record;
+  };
+  add(engine::Event::Kind::tempo, 0).number = 400000;
+  engine::JournalRecord& note = add(engine::Event::Kind::midi, 3 * kBlock + 7);
+  note.bytes[0] = 0x90;
+  note.bytes[1] = 60;
+  note.bytes[2] = 127;
+  // 61 / 24 is the first clock at or after 2.51, and so is 6 / 24 of 0.25.
+  const double rounded = std::llround(2.51 * 0x1p31) * 0x1p-31;
+  add(engine::Event::Kind::position, 10 * kBlock + (61 / 24.0 - rounded) * 19200).number = 61;
+  add(engine::Event::Kind::position, 50 * kBlock).number = 6;
+  journal.end = kBlock * kBlocks;
+  journal.sha256 = hash_of(all);
+  const support::ScratchFolder folder;
+  ASSERT_TRUE(base::write_file(folder.file("song.journal"), engine::write_journal(journal)));
+  const auto run = support::run_program(
+      {"knotwave-render", "--journal", folder.file("song.journal"), "-o", folder.file("song.wav")});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find(journal.sha256), std::string::npos) << run.out << journal.sha256;
+}
+
 TEST(Clap, BlocksOfAnySizeGiveTheSameSamples) {
   constexpr std::size_t kFrames = 24000;
   const auto sound = [](std::size_t block) {

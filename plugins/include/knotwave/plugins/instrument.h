@@ -22,6 +22,14 @@ struct InstrumentConfig {
   int max_voices = 128;
 };
 
+/// Of the host, at one sample of a block.
+struct Transport {
+  double beats_per_minute = 0;  ///< quarter notes; 0: not known
+  double quarters = 0;          ///< since the song's start
+  bool is_playing = false;      ///< the song runs
+  bool has_position = false;    ///< `quarters` is known
+};
+
 class Instrument {
  public:
   static constexpr std::size_t kMostParameters = 128;
@@ -68,8 +76,10 @@ class Instrument {
   void add(const engine::Event& event) KNOTWAVE_RT;
   /// From that sample on (over engine::kTargetGlideSeconds).
   void add_parameter(std::size_t place, double value, std::int64_t sample) KNOTWAVE_RT;
-  /// Of the host's transport; the same tempo again costs nothing.
-  void add_tempo(double beats_per_minute, std::int64_t sample) KNOTWAVE_RT;
+  /// Once a block, or where it changes. A tempo that is in force costs nothing. The song's position
+  /// is told to the engine where the song begins to play and where it jumps (by more than 1/1000 of
+  /// a quarter note), at the next 1/24 of a quarter note, to a 2^-32 of a sample.
+  void add_transport(const Transport& transport, std::int64_t sample) KNOTWAVE_RT;
   void render() KNOTWAVE_RT;
   /// Every note ends at once. Parameters and controllers stay.
   void reset() KNOTWAVE_RT;
@@ -79,6 +89,9 @@ class Instrument {
   Result<void> load(engine::BankSpec spec);
   void render_until(std::size_t sample) KNOTWAVE_RT;
   void push(const engine::Event& event) KNOTWAVE_RT;
+  void place(const engine::Event& event) KNOTWAVE_RT;
+  void place_song() KNOTWAVE_RT;
+  void follow_song(const Transport& transport, std::int64_t sample) KNOTWAVE_RT;
 
   InstrumentConfig config_;
   engine::BankSpec spec_;
@@ -95,6 +108,12 @@ class Instrument {
   std::span<float> left_, right_;
   std::size_t done_ = 0;  ///< samples of this block that are rendered
   std::uint32_t tempo_microseconds_ = 500000;
+  // The host's song: where it would be at the block's first sample if it ran on as it did, and what
+  // is still to be told.
+  bool is_playing_ = false, is_song_due_ = false;
+  double quarters_ = 0;
+  base::SampleTime song_due_;
+  std::int64_t song_clocks_ = 0;
 };
 
 }  // namespace knotwave::plugins

@@ -11,6 +11,7 @@
 #include "knotwave/base/file.h"
 #include "knotwave/io/audio_device.h"
 
+#include "capture.h"
 #include "command_line/exit_codes.h"
 #include "command_line/messages.h"
 #include "command_line/output.h"
@@ -58,8 +59,15 @@ int play(const EnvOptions& options, const EnvInput& input) {
   return kExitOk;
 }
 
+int capture(const EnvOptions& options) {
+  is_live = options.capture.from.empty();
+  const auto text = run_capture(options, signals);
+  return text ? print(kProgram, *text) : say(text.error());
+}
+
 int run(const EnvOptions& options) {
   if (options.list) return print(kProgram, device_list());
+  if (!options.capture.word.empty()) return capture(options);
   const auto input = read_input(options);
   if (!input) return say(input.error());
   for (const std::string& line : input->warnings) {

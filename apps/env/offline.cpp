@@ -23,14 +23,6 @@ namespace {
 constexpr std::size_t kWarningsShown = 20;
 constexpr double kRampSeconds = 0.5;
 
-void say_warnings(const std::string& name, const io::Song& song) {
-  for (std::size_t i = 0; i < song.warnings.size() && i < kWarningsShown; ++i) {
-    const io::SongWarning& warning = song.warnings[i];
-    std::fprintf(stderr, "%s: byte %zu: warning: %s\n", io::printable(name, 4096).c_str(),
-                 warning.offset, io::printable(warning.message, 400).c_str());
-  }
-}
-
 Result<void> write_song(const EnvOptions& options, const DryRun& run) {
   std::size_t left_out = 0;
   const io::Song song = song_of(run.sent.messages(), run.names, run.end, left_out);
@@ -149,6 +141,14 @@ Result<std::string> write_voltages(const EnvOptions& options, const EnvInput& in
 }
 
 }  // namespace
+
+void say_warnings(const std::string& name, const io::Song& song) {
+  for (std::size_t i = 0; i < song.warnings.size() && i < kWarningsShown; ++i) {
+    const io::SongWarning& warning = song.warnings[i];
+    std::fprintf(stderr, "%s: byte %zu: warning: %s\n", io::printable(name, 4096).c_str(),
+                 warning.offset, io::printable(warning.message, 400).c_str());
+  }
+}
 
 Result<std::string> run_offline(const EnvOptions& options, const EnvInput& input) {
   auto song = io::read_midi_file(options.dry_run);

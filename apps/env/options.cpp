@@ -23,8 +23,11 @@ constexpr const char* kMore =
     "  knotwave-env swell.toml --midi-in Keystep --midi-out Minitaur\n"
     "  knotwave-env swell.toml --midi-out Minitaur --cc 74 --channel 3 --monitor\n"
     "  knotwave-env swell.toml --dry-run song.mid -o sent.mid --plot sent.svg\n"
+    "  knotwave-env --capture cc1 --midi-in Keystep -o knob.toml\n"
+    "  knotwave-env --capture loudness --from drums.wav -o drums.toml --plot drums.svg\n"
     "\n"
-    "Every destination goes to its rest value at the end, with Ctrl-C too.\n"
+    "Every destination goes to its rest value at the end, with Ctrl-C too. Ctrl-C saves a\n"
+    "capture, and that is no failure.\n"
     "Exit codes: 0 done, 1 failure, 2 wrong usage, 75 try again, 130 ended by Ctrl-C.";
 
 std::string read_osc(const std::string& text, std::optional<io::OscPlace>& osc) {
@@ -94,13 +97,119 @@ void add_dry_run(CLI::App& app, EnvOptions& o) {
   add_text(app,
            {"-o,--output",
             "what --dry-run would send: as a .mid, one tick a sample of 1/48000 s; as a .csv; or "
-            "the control voltages as a .wav",
+            "the control voltages as a .wav; what --capture makes, as a .toml",
             "FILE"},
            o.output);
-  add_text(app, {"--plot", "draw what --dry-run would send, as steps over the curves", "FILE.svg"},
-           o.plot);
+  add_text(
+      app,
+      {"--plot", "draw what --dry-run would send, or --capture heard, over the curves", "FILE.svg"},
+      o.plot);
   add_number(app, {"--tail", "how long --dry-run plays on behind the end of the song", "SECONDS"},
              o.tail_s, 0.0, 3600.0);
+}
+
+std::string read_word(const std::string& text, CaptureOptions& capture) {
+  capture.word = text;
+  capture.is_sound = text == "loudness" || text == "peak";
+  if (text == "peak") capture.measure = dsp::LoudnessConfig::Measure::peak;
+  if (capture.is_sound) return {};
+  const auto value = engine::parse_midi_value(text);
+  if (value) {
+    capture.value = *value;
+    return {};
+  }
+  return value.error().message + "; of a sound there are loudness and peak";
+}
+
+void add_capture(CLI::App& app, EnvOptions& o) {
+  using namespace command_line;
+  CaptureOptions& c = o.capture;
+  add_checked(app,
+              {"--capture",
+               "record this into a curve of few points instead of playing: cc0 to cc119, nrpn0 to "
+               "nrpn16383, bend, pressure or poly_pressure, from MIDI inputs until Ctrl-C or "
+               "--duration, or --from a file; loudness or peak of a sound file",
+               "VALUE"},
+              [&c](const std::string& text) { return read_word(text, c); });
+  add_text(app, {"--from", "capture from this .mid, or this sound", "FILE"}, c.from);
+  add_choice(app, {"--bits", "of the controller or NRPN that is captured", ""}, {"7", "14"},
+             [&c](std::size_t i) { c.bits = i == 0 ? 7 : 14; });
+  add_number(app,
+             {"--tolerance",
+              "how far the curve may be from what was captured: in steps (0.5 if not given), of "
+              "sounds in dB with --floor (0.5), else of full scale (0.01)",
+              ""},
+             c.tolerance, 0.0, 10000.0);
+  add_number(app, {"--points", "refuse a captured curve of more points; 0 takes any", ""}, c.points,
+             0, 4096);
+  add_flag(app,
+           {"--beats", "times of the captured curve are beats: of the .mid, else of --bpm", ""},
+           c.beats);
+  add_flag(
+      app,
+      {"--whole", "capture from the beginning to the end, not from the first move to the last", ""},
+      c.whole);
+  add_number(
+      app,
+      {"--ramp", "how long a captured value takes to one that is more than a step away", "SECONDS"},
+      c.ramp_s, 0.0001, 10.0);
+  add_number(app, {"--window", "what the loudness is taken over", "SECONDS"}, c.window_s, 0.0001,
+             10.0);
+  add_number(app, {"--hop", "from one loudness to the next, no longer than --window", "SECONDS"},
+             c.hop_s, 0.0001, 10.0);
+  add_number(
+      app, {"--floor", "loudness as dB from here, which is 0, to 0 dB, which is 1; 0: linear", ""},
+      c.floor_db, -200.0, 0.0);
+}
+
+bool is_midi_file(const std::string& path) {
+  for (const char* ending : {".mid", ".midi", ".rmi"}) {
+    if (base::has_ending(path, ending)) return true;
+  }
+  return false;
+}
+
+std::string capture_file_conflict(const EnvOptions& o) {
+  const CaptureOptions& c = o.capture;
+  if (!o.output.empty() && !base::has_ending(o.output, ".toml")) {
+    return "--output: '" + o.output + "' does not end in .toml, as a captured curve does";
+  }
+  if (!o.plot.empty() && !base::has_ending(o.plot, ".svg")) {
+    return "--plot: '" + o.plot + "' does not end in .svg";
+  }
+  std::vector<command_line::NamedFile> inputs, outputs;
+  if (!c.from.empty()) inputs.push_back({"--from", c.from});
+  if (!o.output.empty()) outputs.push_back({"--output", o.output});
+  if (!o.plot.empty()) outputs.push_back({"--plot", o.plot});
+  return command_line::overlap(inputs, outputs);
+}
+
+std::string capture_conflict(EnvOptions& o) {
+  CaptureOptions& c = o.capture;
+  if (!o.patches.empty()) {
+    return "'" + o.patches.front() +
+           "' is not played while --capture records; a file to capture goes behind --from";
+  }
+  if (!o.dry_run.empty())
+    return "--dry-run plays, --capture records: --from names what is captured";
+  if (c.is_sound && c.from.empty()) {
+    return "--capture " + c.word + " is of a sound file: name it with --from";
+  }
+  if (c.is_sound && is_midi_file(c.from)) {
+    return "--capture " + c.word + " is of a sound, '" + c.from + "' is named as a MIDI file";
+  }
+  if (!c.is_sound && !c.from.empty() && !is_midi_file(c.from)) {
+    return "--capture " + c.word +
+           " is of MIDI: --from takes a .mid; loudness and peak are of sounds";
+  }
+  if (!c.is_sound && c.floor_db != 0) return "--floor is for loudness and peak";
+  if (c.is_sound && c.bits != 0) return "--bits is for MIDI controllers and NRPN";
+  if (c.is_sound && c.hop_s > c.window_s) return "--hop is longer than --window";
+  if (c.is_sound) return capture_file_conflict(o);
+  const auto value = engine::parse_midi_value(c.word, c.bits);
+  if (!value) return "--bits: " + value.error().message;
+  c.value = *value;
+  return capture_file_conflict(o);
 }
 
 std::string dry_run_conflict(const EnvOptions& o) {
@@ -125,14 +234,16 @@ std::string dry_run_conflict(const EnvOptions& o) {
 }
 
 /// What is wrong with values that are each good in themselves; empty when nothing is.
-std::string conflict(const EnvOptions& o) {
+std::string conflict(EnvOptions& o) {
   if (o.list) return {};
-  if (o.patches.empty()) return "there is no PATCH to play; --list shows MIDI inputs and outputs";
+  if (!o.capture.word.empty()) return capture_conflict(o);
+  if (!o.capture.from.empty()) return "--from is for --capture";
+  if (o.patches.empty())
+    return "there is no PATCH to play and nothing to --capture; --list shows MIDI inputs and "
+           "outputs";
   for (const std::string& patch : o.patches) {
-    for (const char* ending : {".mid", ".midi", ".rmi"}) {
-      if (base::has_ending(patch, ending)) {
-        return "'" + patch + "' is named as a MIDI file; those go behind --dry-run";
-      }
+    if (is_midi_file(patch)) {
+      return "'" + patch + "' is named as a MIDI file; those go behind --dry-run";
     }
   }
   return dry_run_conflict(o);
@@ -148,6 +259,7 @@ CommandLine read_command_line(int argc, char** argv) {
   add_playing(app, options);
   add_devices(app, options);
   add_dry_run(app, options);
+  add_capture(app, options);
   line.exit_code =
       command_line::read_words(app, argc, argv, [&options] { return conflict(options); });
   return line;

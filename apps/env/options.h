@@ -6,9 +6,27 @@
 #include <string>
 #include <vector>
 
+#include "knotwave/dsp/loudness.h"
+#include "knotwave/engine/midi_value.h"
 #include "knotwave/io/osc_input.h"
 
 namespace knotwave::env {
+
+/// --capture: what becomes a curve, and how near.
+struct CaptureOptions {
+  std::string word;             ///< as it was given; empty: nothing is captured
+  bool is_sound = false;        ///< the level of a sound, else the MIDI value
+  engine::MidiValueSpec value;  ///< with the bits asked for
+  int bits = 0;                 ///< 0: not asked for
+  dsp::LoudnessConfig::Measure measure = dsp::LoudnessConfig::Measure::rms;
+  std::string from;      ///< a file; empty: MIDI inputs
+  double tolerance = 0;  ///< steps, dB, or of full scale; 0: what is usual
+  int points = 0;        ///< at most; 0: any number
+  bool beats = false, whole = false;
+  double ramp_s = 0.05;
+  double window_s = 0.05, hop_s = 0.01;
+  double floor_db = 0;  ///< below 0: a scale of decibels from there; 0: linear
+};
 
 struct EnvOptions {
   std::vector<std::string> patches;
@@ -25,6 +43,7 @@ struct EnvOptions {
   bool thru = false;
   std::string dry_run, output, plot;
   bool monitor = false, quiet = false;
+  CaptureOptions capture;
   double latency_ms = 2;
   double bpm = 120;
   double tail_s = 2;

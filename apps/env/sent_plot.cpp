@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "knotwave/curves/plot_traces.h"
+#include "knotwave/engine/midi_value.h"
 
 #include "patch_players.h"
 #include "status.h"
@@ -11,7 +12,6 @@
 namespace knotwave::env {
 namespace {
 
-using base::MidiStatus;
 using engine::OutputKind;
 using Points = std::vector<std::pair<double, double>>;
 
@@ -21,65 +21,6 @@ double seconds_of(base::SampleTime time) {
   return (static_cast<double>(time.sample) + static_cast<double>(time.fraction) * 0x1p-32) /
          kClockHz;
 }
-
-/// Controllers and parameters as a receiver understands them.
-class Receiver {
- public:
-  explicit Receiver(const engine::OutputSpec& spec) : spec_(spec) {}
-
-  /// True when `value()` was told anew.
-  bool hears(const SentMessage& message) {
-    const int one = message.bytes[1], two = message.bytes[2];
-    switch (static_cast<MidiStatus>(message.bytes[0] & 0xF0)) {
-      case MidiStatus::control_change:
-        return hears_control(one, two);
-      case MidiStatus::pitch_bend:
-        value_ = (two << 7 | one) - 8192;
-        return spec_.kind == OutputKind::pitch_bend;
-      case MidiStatus::channel_pressure:
-        value_ = one;
-        return spec_.kind == OutputKind::channel_pressure;
-      case MidiStatus::poly_pressure:
-        value_ = two;
-        return spec_.kind == OutputKind::poly_pressure;
-      default:
-        return false;
-    }
-  }
-  double value() const { return value_; }
-  /// The message was a lower half, so the upper one before it was no value by itself.
-  bool is_second() const { return is_second_; }
-
- private:
-  bool hears_control(int number, int value) {
-    if (spec_.kind == OutputKind::nrpn) {
-      if (number == 99) parameter_ = value << 7 | (parameter_ & 127);
-      if (number == 98) parameter_ = (parameter_ & ~127) | value;
-      const bool is_data = number == 6 || number == 38;
-      return is_data && parameter_ == spec_.number && hears_half(number == 6, value);
-    }
-    if (spec_.kind != OutputKind::control) return false;
-    const bool is_low = spec_.bits == 14 && number == spec_.number + 32;
-    return (number == spec_.number || is_low) && hears_half(!is_low, value);
-  }
-  // An upper half puts the lower one to 0 (MIDI 1.0), until that follows.
-  bool hears_half(bool is_high, int value) {
-    if (is_high) {
-      high_ = value;
-      low_ = 0;
-    } else {
-      low_ = value;
-    }
-    is_second_ = !is_high;
-    value_ = spec_.bits == 14 ? high_ << 7 | low_ : high_;
-    return true;
-  }
-
-  const engine::OutputSpec& spec_;
-  int parameter_ = 16383, high_ = 0, low_ = 0;
-  double value_ = 0;
-  bool is_second_ = false;
-};
 
 /// The port that an output of MIDI goes to.
 int port_of(const EnvInput& input, const SentNames& names, std::size_t patch,
@@ -136,7 +77,8 @@ Result<std::vector<std::vector<Points>>> curves_of(const EnvOptions& options, co
 
 Points received(std::span<const SentMessage> messages, int port, int patch, int output,
                 const engine::OutputSpec& spec) {
-  Receiver receiver(spec);
+  engine::MidiValue value({spec.kind, spec.number, spec.bits});
+  const int middle = spec.kind == OutputKind::pitch_bend ? 8192 : 0;
   Points points;
   for (const SentMessage& message : messages) {
     const bool is_osc = message.patch == patch && message.output == output;
@@ -146,12 +88,12 @@ Points received(std::span<const SentMessage> messages, int port, int patch, int 
     }
     const bool is_channel = spec.channel == 0 || (message.bytes[0] & 15) == spec.channel - 1;
     if (message.port != port || message.bytes[0] >= 0xF0 || !is_channel) continue;
-    if (!receiver.hears(message)) continue;
+    if (!value.hear(message.bytes)) continue;
     const double time_s = seconds_of(message.time);
-    if (receiver.is_second() && !points.empty() && time_s - points.back().first < kPairSeconds) {
+    if (value.completes() && !points.empty() && time_s - points.back().first < kPairSeconds) {
       points.pop_back();
     }
-    points.emplace_back(time_s, receiver.value());
+    points.emplace_back(time_s, value.step() - middle);
   }
   return points;
 }

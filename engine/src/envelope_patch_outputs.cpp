@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "knotwave/base/suggest.h"
+#include "knotwave/engine/midi_value.h"
 
 #include "envelope_patch_limits.h"
 #include "envelope_patch_reader.h"
@@ -20,15 +21,9 @@ struct Destination {
 };
 
 std::optional<Destination> find_destination(std::string_view word) {
-  if (word == "bend") return Destination{OutputKind::pitch_bend};
-  if (word == "pressure") return Destination{OutputKind::channel_pressure};
-  if (word == "poly_pressure") return Destination{OutputKind::poly_pressure};
   if (word == "osc") return Destination{OutputKind::osc};
   if (word == "cv") return Destination{OutputKind::voltage, 1};
-  if (const int number = number_after("cc", word); number >= 0 && number <= kLastControl)
-    return Destination{OutputKind::control, number};
-  if (const int number = number_after("nrpn", word); number >= 0 && number <= kLastNrpn)
-    return Destination{OutputKind::nrpn, number};
+  if (const auto value = find_midi_value(word)) return Destination{value->kind, value->number};
   return std::nullopt;
 }
 

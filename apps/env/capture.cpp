@@ -35,7 +35,7 @@ double value_at(const NurbsCurve& curve, double time) {
 
 /// As the file is called, where that is a name.
 std::string name_of(const CaptureOptions& options, const std::string& output) {
-  const std::string stem = std::filesystem::path(output).stem().string();
+  std::string stem = std::filesystem::path(output).stem().string();
   if (curves::is_valid_name(stem)) return stem;
   return curves::is_valid_name(options.word) ? options.word : "captured";
 }

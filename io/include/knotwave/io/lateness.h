@@ -23,7 +23,7 @@ class Lateness {
 
  private:
   // Below 8 ns a bin each; from there 8 bins to a factor of 2, up to 2^40 ns, a quarter of an hour.
-  static constexpr std::size_t kBins = 8 * 38;
+  static constexpr std::size_t kBins = std::size_t{8} * 38;
   std::array<std::atomic<std::int64_t>, kBins> bins_{};
   std::atomic<std::int64_t> max_ns_{0};
 };

@@ -99,6 +99,8 @@ kind = "envelope"
 name = "sweep"
 [trigger]
 from = "note"
+[ports.out]
+wire = "none"
 [curves.sweep]
 degree = 3
 points = [0, 1.2, 0.1, 1, 0.3, 0]

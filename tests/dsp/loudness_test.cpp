@@ -60,7 +60,7 @@ std::vector<LoudnessMeter::Level> levels_of(const LoudnessConfig& config,
 
 TEST(Loudness, IsWhatNumpyComputes) {
   for (const Reference& reference : kReferences) {
-    const std::vector<float> samples = sound_of(reference);
+    const auto samples = sound_of(reference);
     const auto rms = levels_of(config_of(reference, Measure::rms), samples, samples.size());
     const auto peak = levels_of(config_of(reference, Measure::peak), samples, samples.size());
     ASSERT_EQ(rms.size(), reference.levels.size());
@@ -75,11 +75,12 @@ TEST(Loudness, IsWhatNumpyComputes) {
 
 TEST(Loudness, IsTheSameForAnySplitOfTheSound) {
   for (const Reference& reference : kReferences) {
-    const std::vector<float> samples = sound_of(reference);
+    const auto samples = sound_of(reference);
     for (const Measure measure : {Measure::rms, Measure::peak}) {
       const auto whole = levels_of(config_of(reference, measure), samples, samples.size());
-      for (const std::size_t frames : {1, 2, 3, 64, 479, 4096}) {
-        const auto split = levels_of(config_of(reference, measure), samples, frames);
+      for (const int frames : {1, 2, 3, 64, 479, 4096}) {
+        const auto split =
+            levels_of(config_of(reference, measure), samples, static_cast<std::size_t>(frames));
         ASSERT_EQ(split.size(), whole.size());
         for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_EQ(split[i].level, whole[i].level);
       }
@@ -102,7 +103,7 @@ TEST(Loudness, OfAFullScaleSineIsTheRootOfAHalfInAnyNumberOfChannels) {
   for (const int channels : {1, 2}) {
     std::vector<float> samples;
     for (int i = 0; i < 4800; ++i) {
-      for (int c = 0; c < channels; ++c) {
+      for (int channel = 0; channel < channels; ++channel) {
         samples.push_back(static_cast<float>(base::sin_cos_cycles(i / 48.0).sin));
       }
     }

@@ -2,6 +2,7 @@
 // Reads and compiles patches on a thread of its own, so that nothing waits for it.
 #pragma once
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -35,22 +36,29 @@ class BankLoader {
   BankLoader();
   BankLoader(const BankLoader&) = delete;
   BankLoader& operator=(const BankLoader&) = delete;
-  /// Waits for what is being compiled just now.
+  /// Waits for what is being compiled just now, half a second at most: who reads from a pipe is
+  /// left behind.
   ~BankLoader();
 
   /// A newer wish replaces one that was not begun yet.
   void request(const std::string& path);
   /// What became of a wish, each once.
   std::optional<Loaded> take();
+  /// Some loader's thread was left behind and is still under way. [any]
+  static bool is_any_under_way() noexcept;
 
  private:
-  void run();
+  /// Also the thread's.
+  struct Shared {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::optional<std::string> wish;
+    std::optional<Loaded> done;
+    bool is_over = false, has_ended = false;
+  };
+  static void run(Shared& shared);
 
-  std::mutex mutex_;
-  std::condition_variable more_;
-  std::optional<std::string> wish_;
-  std::optional<Loaded> done_;
-  bool is_over_ = false;
+  std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
   std::thread thread_;
 };
 

@@ -14,6 +14,7 @@
 #include "knotwave/base/file.h"
 #include "knotwave/curves/simd.h"
 
+#include "bank_loader.h"
 #include "command_line/exit_codes.h"
 #include "command_line/messages.h"
 #include "command_line/output.h"
@@ -146,10 +147,11 @@ int run(const SynthOptions& options, char** argv) {
   return play(options, argv);
 }
 
-/// Threads that hang in a library are left to the system.
+/// Threads that hang in a library or in a pipe are left to the system.
 [[noreturn]] void leave(int code) {
   std::fflush(nullptr);
-  if (!StreamOpener::is_any_under_way() && !io::AudioStream::is_poisoned()) std::exit(code);
+  const bool is_any_left = StreamOpener::is_any_under_way() || BankLoader::is_any_under_way();
+  if (!is_any_left && !io::AudioStream::is_poisoned()) std::exit(code);
   restore_terminal();
   ::_exit(code);
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <compare>
 #include <iterator>
 #include <span>
 #include <system_error>
@@ -162,7 +161,7 @@ std::span<const engine::Event> Player::exact_events(const io::AudioBlock& block)
   if (!song_) return heard;
   const auto played = song_->due(block.frames);
   const auto comes_first = [](const engine::Event& a, const engine::Event& b) {
-    return std::is_lt(a.time() <=> b.time());
+    return a.time() < b.time();
   };
   exact_.clear();
   std::merge(played.begin(), played.end(), heard.begin(), heard.end(), std::back_inserter(exact_),

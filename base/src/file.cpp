@@ -13,6 +13,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -154,10 +155,22 @@ Result<void> write_all(int descriptor, std::span<const std::byte> bytes, const s
   return {};
 }
 
+/// Of a pipe or a terminal: there is something to read, or its end.
+bool has_more(int descriptor) {
+  constexpr int kPatienceMs = 5000;
+  pollfd ready{descriptor, POLLIN, 0};
+  int count = 0;
+  do {
+    count = ::poll(&ready, 1, kPatienceMs);
+  } while (count < 0 && errno == EINTR);
+  return count > 0;
+}
+
 }  // namespace
 
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // A pipe without a writer would be waited for in open().
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.value < 0) {
     const bool missing = errno == ENOENT || errno == ENOTDIR;
     return read_error(
@@ -178,11 +191,14 @@ Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
   }
   std::string bytes;
   for (;;) {
+    if (!S_ISREG(info.st_mode) && !has_more(file.value)) {
+      return read_error(ErrorCode::io_failed, path, "nobody has written into this pipe for 5 s");
+    }
     constexpr std::size_t kChunk = 1 << 16;
     const std::size_t before = bytes.size();
     bytes.resize(before + kChunk);
     const ssize_t count = ::read(file.value, bytes.data() + before, kChunk);
-    if (count < 0 && errno != EINTR) {
+    if (count < 0 && errno != EINTR && errno != EAGAIN) {
       return read_error(ErrorCode::io_failed, path, std::generic_category().message(errno));
     }
     bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));

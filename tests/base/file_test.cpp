@@ -3,8 +3,10 @@
 #include "knotwave/base/file.h"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -34,6 +36,24 @@ using Names = std::vector<std::string>;
 std::string text_of(const std::string& path) {
   const Result<std::string> text = read_file(path, 1 << 20);
   return text ? *text : text.error().to_string();
+}
+
+TEST(ReadFile, APipeIsReadToItsEndAndNotWaitedForWhereNobodyWrites) {
+  const ScratchFolder folder;
+  const std::string pipe = folder.file("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] {
+    std::ofstream out(pipe);
+    out << "one, " << std::flush;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    out << "two";
+  });
+  EXPECT_EQ(text_of(pipe), "one, two");
+  writer.join();
+  const auto alone = read_file(pipe, 100);
+  ASSERT_FALSE(alone);
+  EXPECT_EQ(alone.error().code, ErrorCode::io_failed);
+  EXPECT_EQ(alone.error().message, "nobody has written into this pipe for 5 s");
 }
 
 TEST(ReadFile, GivesTheBytes) {

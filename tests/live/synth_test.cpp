@@ -317,44 +317,6 @@ TEST_F(SynthProgram, WithoutADeviceSaysWhatToDoAndRecordsAllTheSame) {
   EXPECT_GT(io::read_sound(file("a.wav"))->frames, 4800);
 }
 
-TEST_F(SynthProgram, WhereAlsaHasNoConfigurationSaysSoAndRecordsAllTheSame) {
-  const support::NoJackServer none;
-  for (const char* path : {"/dev/null", "/no/such", "broken.conf"}) {
-    write("broken.conf", "pcm.default {");
-    const support::SetVariable read_by_alsa("ALSA_CONFIG_PATH", path);
-    for (const std::vector<std::string>& api :
-         {std::vector<std::string>{}, {"--audio-api", "alsa"}}) {
-      std::vector<std::string> words = {"small.toml"};
-      words.insert(words.end(), api.begin(), api.end());
-      SynthProcess refused(words, here());
-      EXPECT_EQ(refused.exit_code(), 1) << path;
-      EXPECT_THAT(refused.err(), HasSubstr("no sound device"));
-      EXPECT_THAT(refused.err(), HasSubstr("alsa: its configuration "));
-      EXPECT_THAT(refused.err(), HasSubstr("install libasound2-data"));
-      EXPECT_THAT(refused.err(), HasSubstr("--record FILE"));
-    }
-    SynthProcess listed({"--list-devices"}, here());
-    EXPECT_EQ(listed.exit_code(), 0);
-    EXPECT_THAT(listed.out(), HasSubstr("alsa: its configuration "));
-  }
-  const support::SetVariable read_by_alsa("ALSA_CONFIG_PATH", "/dev/null");
-  SynthProcess synth({"small.toml", "--record", "a.wav", "--duration", "0.3"}, here());
-  EXPECT_EQ(synth.exit_code(), 0) << synth.err();
-}
-
-TEST_F(SynthProgram, AFullDiskEndsTheTakeAndNotTheSound) {
-  support::ProgramOptions options;
-  options.folder = folder_.path();
-  options.max_file_bytes = 100'000;
-  const auto done = support::run_program({"knotwave-synth", "small.toml", "--audio-api", "none",
-                                          "--record", "a.wav", "--duration", "2"},
-                                         options);
-  EXPECT_THAT(done.err, HasSubstr("the take is lost: "));
-  EXPECT_EQ(done.exit_code, 1);
-  EXPECT_GT(done.wall_s, 1.9);
-  EXPECT_FALSE(std::filesystem::exists(file("a.wav")));
-}
-
 TEST_F(SynthProgram, PlaysWhatOscSaysAndTellsWhatItDoesNotUnderstandOnce) {
   SynthProcess synth({"small.toml", "--audio-api", "none", "--json-status", "--osc", osc_port()},
                      here());

@@ -12,7 +12,7 @@
 namespace knotwave::base {
 
 /// Errors: file_not_found (the message suggests the nearest name in that folder), io_failed (a
-/// folder, no permission), file_too_large.
+/// folder, no permission, a pipe that nobody writes into for 5 s), file_too_large.
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes);
 
 /// A file being written beside its final name as NAME.part-PID; a NAME too long for that is cut and

@@ -51,9 +51,24 @@ double tolerance_of(const CaptureOptions& options, const Recording& recording) {
   return options.tolerance > 0 ? options.tolerance : recording.usual_tolerance;
 }
 
-Result<curves::FittedCurve> fit(const Recording& recording, double tolerance) {
+Result<curves::FittedCurve> fit_of_degree(const Recording& recording, double tolerance,
+                                          int degree) {
   return curves::reduce_data(recording.line.times, recording.line.values,
-                             tolerance * recording.unit, kDegree);
+                             tolerance * recording.unit, degree);
+}
+
+/// Of degree 3; where that takes many points, as jumps and corners do, straight lines if these take
+/// fewer.
+Result<curves::FittedCurve> fit(const Recording& recording, double tolerance) {
+  auto smooth = fit_of_degree(recording, tolerance, kDegree);
+  const bool is_too_many = !smooth && smooth.error().code == ErrorCode::too_many_points;
+  if (!is_too_many && !smooth) return smooth;
+  const std::size_t many = recording.line.times.size() / 2;
+  if (smooth && static_cast<std::size_t>(smooth->curve.point_count()) <= many) return smooth;
+  auto lines = fit_of_degree(recording, tolerance, 1);
+  if (!lines) return smooth;
+  if (smooth && smooth->curve.point_count() <= lines->curve.point_count()) return smooth;
+  return lines;
 }
 
 /// What is said where more points are needed than may be.

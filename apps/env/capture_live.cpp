@@ -74,7 +74,7 @@ class LiveCapture {
 
   Result<void> open() {
     io::MidiInputConfig config;
-    config.api = options_.midi_api;
+    config.api = options_.midi_api == "rtmidi-jack" ? "jack" : options_.midi_api;
     config.ports = options_.midi_in;
     config.client_name = "Knotwave-env-in";
     auto inputs = io::MidiInputs::open(config, ear_);

@@ -136,12 +136,12 @@ void add_capture(CLI::App& app, EnvOptions& o) {
              [&c](std::size_t i) { c.bits = i == 0 ? 7 : 14; });
   add_number(app,
              {"--tolerance",
-              "how far the curve may be from what was captured: in steps (0.5 if not given), of "
-              "sounds in dB with --floor (0.5), else of full scale (0.01)",
+              "how far the curve may be from what was captured, in steps, or of sounds in dB with "
+              "--floor, else of full scale; 0 takes half a step, 0.5 dB or 0.01",
               ""},
              c.tolerance, 0.0, 10000.0);
-  add_number(app, {"--points", "refuse a captured curve of more points; 0 takes any", ""}, c.points,
-             0, 4096);
+  add_number(app, {"--points", "refuse a captured curve of more points than this; 0 takes any", ""},
+             c.points, 0, 4096);
   add_flag(app,
            {"--beats", "times of the captured curve are beats: of the .mid, else of --bpm", ""},
            c.beats);

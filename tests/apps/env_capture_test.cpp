@@ -190,6 +190,19 @@ TEST(EnvCapture, OfAnyKnobIsWithinOneStepWhereItWasTold) {
   }
 }
 
+TEST(EnvCapture, OfButtonsIsMadeOfStraightLines) {
+  const ScratchFolder folder;
+  std::vector<Told> all;
+  for (int i = 0; i < 40; ++i) all.push_back({static_cast<std::uint64_t>(i) * 480, 1, i % 2 * 127});
+  write_song(folder.file("in.mid"), song_of(all, 20000));
+  const ProgramRun run =
+      capture({"cc1", "--from", folder.file("in.mid"), "-o", folder.file("knob.toml")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const curves::NurbsCurve knob = curve_of(folder.file("knob.toml"));
+  EXPECT_EQ(knob.degree(), 1);
+  EXPECT_LE(knob.point_count(), 80);
+}
+
 TEST(EnvCapture, IsTheSameFileEveryTime) {
   const ScratchFolder folder;
   write_song(folder.file("in.mid"), song_of({{0, 1, 0}, {480, 1, 64}, {960, 1, 65}}, 2000));

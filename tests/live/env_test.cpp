@@ -102,21 +102,26 @@ auto note_on(const Messages& messages) {
                       [](const auto& message) { return message.bytes[0] == 0x90; });
 }
 
-/// Frames between when a message came and when it should have, both from the note on; sorted.
+/// Frames between when a message came and when it should have, but for what all of a note have in
+/// common: the delay of playing live; sorted.
 class Errors {
  public:
   void add(const std::vector<JackReceiver::Heard>& heard, const Computed& computed) {
     const auto first = note_on(heard);
     const auto right_first = note_on(computed.messages());
     if (first == heard.end()) return;
+    std::vector<double> late;
     auto next = first;
     for (auto right = right_first; right != computed.messages().end(); ++right) {
       next =
           std::find_if(next, heard.end(), [&](const auto& h) { return h.bytes == right->bytes; });
       if (next == heard.end()) break;
       const double at = static_cast<double>(next->frame) - static_cast<double>(first->frame);
-      frames_.push_back(std::abs(at - (right->sample - right_first->sample)));
+      late.push_back(at - (right->sample - right_first->sample));
     }
+    std::vector<double> sorted = late;
+    std::sort(sorted.begin(), sorted.end());
+    for (const double frames : late) frames_.push_back(std::abs(frames - sorted[late.size() / 2]));
     std::sort(frames_.begin(), frames_.end());
   }
   std::size_t count() const { return frames_.size(); }
@@ -157,7 +162,8 @@ void add_program(const char* api, const Computed& computed, Errors& errors) {
   JackReceiver board("board");
   ASSERT_LT(seconds_until([&] { return board.connect_to_client("Knotwave-env", "synth"); }, 15), 15)
       << env.log();
-  ASSERT_LT(seconds_until([&] { return env.log().find("\nIN ") != std::string::npos; }, 15), 15);
+  ASSERT_LT(seconds_until([&] { return env.log().find("\nIN ") != std::string::npos; }, 15), 15)
+      << env.log();
   const std::size_t wanted = computed.messages().size();
   // The program connects every source that comes by itself; two seconds are plenty for it.
   const support::JackMidiSender keys("", {{96000, {0x90, 60, 100}}});

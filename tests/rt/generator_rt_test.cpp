@@ -111,6 +111,7 @@ struct Storm {
       event.bytes[1] = static_cast<std::uint8_t>(bits >> 8 & 127);
       event.bytes[2] = static_cast<std::uint8_t>(bits >> 16 & 127);
       generator.handle(event);
+      if (i % 500 == 0) generator.say_again(i / 500 % 2);
       generator.advance(now + kBlock, sink);
       volts.fill(static_cast<double>(bits >> 40) * 1e-6);
       voltage.render(now, volts, samples);

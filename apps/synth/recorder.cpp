@@ -14,6 +14,7 @@ namespace knotwave::synth {
 namespace {
 
 constexpr std::size_t kBufferFrames = 16384;
+constexpr std::int64_t kReserveFrames = 32768;
 constexpr auto kPause = std::chrono::milliseconds(5);
 /// A WAV ends at 4 GiB: 8 bytes a frame, and room for the header.
 constexpr std::int64_t kMostFrames = ((std::int64_t{1} << 32) - 65536) / 8;
@@ -96,6 +97,10 @@ bool Recorder::write(std::span<const float> interleaved) {
   const std::int64_t frames =
       std::min(static_cast<std::int64_t>(interleaved.size() / 2), most_frames_ - frames_);
   interleaved = interleaved.first(static_cast<std::size_t>(2 * frames));
+  if (!has_room(frames)) {
+    is_over_ = true;
+    return false;
+  }
   good_ = writer_.write(interleaved);
   if (!good_) {
     is_over_ = true;
@@ -107,6 +112,18 @@ bool Recorder::write(std::span<const float> interleaved) {
   return true;
 }
 
+/// Room for what comes is reserved before it is needed, and as much again for the files beside it:
+/// so a disk that is full ends a take that is good up to there.
+bool Recorder::has_room(std::int64_t frames) {
+  if (frames_ + frames <= reserved_frames_) return true;
+  constexpr std::int64_t kFrameBytes = 8;
+  const std::int64_t ahead = frames + kReserveFrames;
+  const auto reserved = writer_.reserve(ahead * kFrameBytes);
+  reserved_frames_ = frames_ + frames + kReserveFrames / 2;
+  if (!reserved) fault_ = reserved.error().message;
+  return reserved.has_value();
+}
+
 Result<Recorder::Take> Recorder::finish() {
   live_.set_tap(false);
   // A block that is being rendered just now is still kept.
@@ -115,7 +132,7 @@ Result<Recorder::Take> Recorder::finish() {
   thread_.join();
   if (!good_) return good_.error();
   if (auto good = writer_.finish(); !good) return good.error();
-  Take take{path_, std::max<std::int64_t>(first_, 0), frames_, {}};
+  Take take{path_, std::max<std::int64_t>(first_, 0), frames_, {}, fault_};
   if (is_whole_) take.sha256 = hash_.finish_hex();
   return take;
 }

@@ -29,6 +29,7 @@ class Recorder {
     std::string path;
     std::int64_t first = 0, frames = 0;  ///< in engine time
     std::string sha256;  ///< of the interleaved float32 samples; empty: some are missing
+    std::string fault;   ///< why it ended before it was to; empty: it did not
   };
   /// Writes what is left and completes the file. Errors: those of SoundWriter.
   Result<Take> finish();
@@ -46,6 +47,7 @@ class Recorder {
   bool write_some();
   bool write(std::span<const float> interleaved);
   bool fill_gap(std::int64_t until);
+  bool has_room(std::int64_t frames);
 
   engine::LiveEngine& live_;
   std::string path_;
@@ -57,6 +59,8 @@ class Recorder {
   std::vector<float> buffer_;
   std::atomic<std::int64_t> frames_{0};
   std::int64_t first_ = -1;
+  std::int64_t reserved_frames_ = 0;
+  std::string fault_;
   bool is_whole_ = true;
   Result<void> good_;
   std::atomic<bool> is_over_{false}, is_ending_{false};

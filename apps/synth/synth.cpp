@@ -303,6 +303,10 @@ void Synth::end_take() {
     return tell("the take is lost: " + take.error().to_string());
   }
   tell_all(write_beside(*take));
+  if (!take->fault.empty()) {
+    has_failed_ = true;
+    tell("the take ends here: " + take->fault);
+  }
   tell(take->path + ": " + clock_text(static_cast<double>(take->frames) / player_->rate_hz()) +
        (take->sha256.empty() ? ", with gaps" : ", sha256 " + take->sha256));
 }

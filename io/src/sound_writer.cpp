@@ -4,6 +4,9 @@
 #include <optional>
 #include <utility>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include "knotwave/base/file.h"
 #include "knotwave/base/sha256.h"
 #include "knotwave/io/sound_file.h"
@@ -94,10 +97,29 @@ Result<void> SoundWriter::write(std::span<const float> interleaved) {
   return s.encoder->write(std::span<const std::int32_t>(s.integers));
 }
 
+Result<void> SoundWriter::reserve(std::int64_t bytes) {
+#ifdef FALLOC_FL_KEEP_SIZE
+  const State& s = *state_;
+  struct stat info {};
+  if (!s.file || ::fstat(s.file->descriptor(), &info) != 0) return {};
+  const int done = ::fallocate(s.file->descriptor(), FALLOC_FL_KEEP_SIZE, info.st_size, bytes);
+  if (done != 0 && (errno == ENOSPC || errno == EDQUOT)) {
+    return system_error(errno, "cannot write '" + s.config.path + "'");
+  }
+#endif
+  return {};
+}
+
 Result<void> SoundWriter::finish() {
   State& s = *state_;
   if (!s.file) return {};
   if (auto closed = s.encoder->close(); !closed) return closed;
+  // What was reserved and not needed is given back.
+  struct stat info {};
+  if (::fstat(s.file->descriptor(), &info) == 0 &&
+      ::ftruncate(s.file->descriptor(), info.st_size) != 0) {
+    return system_error(errno, "cannot write '" + s.config.path + "'");
+  }
   auto sha256 = sha256_of(s.file->descriptor(), s.config.path);
   if (!sha256) return std::move(sha256).error();
   if (auto committed = s.file->commit(); !committed) return committed;

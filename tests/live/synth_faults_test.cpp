@@ -8,7 +8,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 #include <sys/stat.h>
+
+#include "knotwave/io/sound_file.h"
 
 #include "live/synth_scene.h"
 
@@ -40,6 +43,45 @@ TEST_F(SynthProgram, WhereAlsaHasNoConfigurationSaysSoAndRecordsAllTheSame) {
   const support::SetVariable read_by_alsa("ALSA_CONFIG_PATH", "/dev/null");
   SynthProcess synth({"small.toml", "--record", "a.wav", "--duration", "0.3"}, here());
   EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+}
+
+/// A disk of 1 MiB: two seconds of sound.
+class SmallDisk {
+ public:
+  explicit SmallDisk(const std::string& folder) : folder_(folder) {
+    std::filesystem::create_directory(folder);
+    is_mounted_ = ::mount("tmpfs", folder.c_str(), "tmpfs", 0, "size=1m") == 0;
+  }
+  ~SmallDisk() {
+    if (is_mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  bool is_mounted() const { return is_mounted_; }
+
+ private:
+  std::string folder_;
+  bool is_mounted_;
+};
+
+TEST_F(SynthProgram, WhatWasRecordedUntilTheDiskIsFullIsKeptAndRendersAgain) {
+  const SmallDisk disk(file("small"));
+  if (!disk.is_mounted()) GTEST_SKIP() << "no right to mount a small disk here";
+  SynthProcess synth({"small.toml", "--song", "small.mid", "--audio-api", "none", "--record",
+                      "small/a.wav", "--duration", "4", "--json-status"},
+                     here());
+  EXPECT_EQ(synth.exit_code(), 1);
+  EXPECT_THAT(synth.err(), HasSubstr("the take ends here: cannot write 'small/a.wav': No space"));
+  EXPECT_GT(synth.number("seconds"), 2.9) << "it played on";
+  const auto take = io::read_sound(file("small/a.wav"));
+  ASSERT_TRUE(take.has_value()) << take.error().to_string();
+  EXPECT_GT(take->frames, 48000);
+  support::ProgramOptions options;
+  options.folder = folder_.path();
+  const auto again = support::run_program(
+      {"knotwave-render", "--journal", "small/a.journal", "-o", "again.wav"}, options);
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(render::hash_in(again.out), render::hash_in(synth.err()));
 }
 
 TEST_F(SynthProgram, AFullDiskEndsTheTakeAndNotTheSound) {

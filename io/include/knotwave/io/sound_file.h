@@ -85,6 +85,9 @@ class SoundWriter {
   /// Interleaved frames. PCM is clipped, counted. Errors: io_failed, disk_full, not_finite,
   /// file_too_large (a WAV of more than 4 GiB that expected_frames did not announce).
   Result<void> write(std::span<const float> interleaved);
+  /// Sets `bytes` behind those written aside for what comes next, until finish(); where the file
+  /// system has no way to, it does nothing. Errors: disk_full, and what was written is still good.
+  Result<void> reserve(std::int64_t bytes);
   /// Syncs, closes, renames. Errors as write().
   Result<void> finish();
   /// Samples outside -1..1 (PCM) so far.

@@ -7,6 +7,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include <unistd.h>
@@ -167,6 +168,10 @@ int main(int argc, char** argv) {
     leave(line.exit_code ? *line.exit_code : run(line.options, argv));
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "%s: out of memory\n", kProgram);
+    return kExitTryAgain;
+  } catch (const std::system_error& fault) {
+    std::fprintf(stderr, "%s: the system starts no more threads: %s\n", kProgram,
+                 fault.code().message().c_str());
     return kExitTryAgain;
   }
 }

@@ -36,8 +36,13 @@ Result<std::unique_ptr<Recorder>> Recorder::start(engine::LiveEngine& live, cons
        .channels = 2,
        .format = is_flac ? io::SampleFormat::pcm24 : io::SampleFormat::float32});
   if (!writer) return writer.error();
-  return std::unique_ptr<Recorder>(
-      new Recorder(live, path, rate_hz, most_s, std::move(writer).value()));
+  try {
+    return std::unique_ptr<Recorder>(
+        new Recorder(live, path, rate_hz, most_s, std::move(writer).value()));
+  } catch (const std::system_error& fault) {
+    live.set_tap(false);
+    return fail(ErrorCode::io_failed, "no thread for the take: " + fault.code().message());
+  }
 }
 
 Recorder::Recorder(engine::LiveEngine& live, std::string path, double rate_hz, double most_s,

@@ -20,7 +20,7 @@ class Recorder {
  public:
   /// Writes what `live` plays from the next block on into `path` (.wav: 32-bit float; .flac: 24
   /// bits), `most_s` seconds at most; 0: as long as the file can be. `live` must outlive it, and
-  /// nobody else may take its tap. Errors: those of SoundWriter::create().
+  /// nobody else may take its tap. Errors: those of SoundWriter::create(), io_failed (no thread).
   static Result<std::unique_ptr<Recorder>> start(engine::LiveEngine& live, const std::string& path,
                                                  double rate_hz, double most_s);
   ~Recorder();  ///< drops the take, unless finish() was called

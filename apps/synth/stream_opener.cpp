@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -31,16 +32,21 @@ void StreamOpener::begin(const io::AudioConfig& config, io::AudioClient& client)
   if (try_) return;
   try_ = std::make_shared<Try>();
   ++tries_under_way;
-  std::thread([config, &client, shared = try_] {
-    // Opened, not started: it asks the client for nothing yet.
-    std::optional<Opened> opened = io::AudioStream::open(config, client);
-    {
-      const std::lock_guard lock(shared->mutex);
-      if (shared->is_wanted) shared->opened = std::move(opened);
-    }
-    opened.reset();
+  try {
+    std::thread([config, &client, shared = try_] {
+      // Opened, not started: it asks the client for nothing yet.
+      std::optional<Opened> opened = io::AudioStream::open(config, client);
+      {
+        const std::lock_guard lock(shared->mutex);
+        if (shared->is_wanted) shared->opened = std::move(opened);
+      }
+      opened.reset();
+      --tries_under_way;
+    }).detach();
+  } catch (const std::system_error&) {
     --tries_under_way;
-  }).detach();
+    try_.reset();
+  }
 }
 
 std::optional<StreamOpener::Opened> StreamOpener::take() {

@@ -18,7 +18,8 @@ class StreamOpener {
   /// Does not wait for a try that is under way: what it opens then is closed at once.
   ~StreamOpener();
 
-  /// Begins a try, unless one is under way. `client` must outlive what is opened.
+  /// Begins a try, unless one is under way or no thread is to be had. `client` must outlive what is
+  /// opened.
   void begin(const io::AudioConfig& config, io::AudioClient& client);
   /// What became of a try, once.
   std::optional<Opened> take();

@@ -37,6 +37,7 @@ Result<OscPlace> parse_osc_place(std::string_view text) {
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -199,7 +200,11 @@ Result<std::unique_ptr<OscInput>> OscInput::open(const OscPlace& place, OscListe
   if (!socket) return socket.error();
   Descriptor wake(::eventfd(0, EFD_CLOEXEC));
   if (wake.value() < 0) return system_error(errno, "OSC");
-  return {std::make_unique<LibloInput>(std::move(socket).value(), std::move(wake), listener)};
+  try {
+    return {std::make_unique<LibloInput>(std::move(socket).value(), std::move(wake), listener)};
+  } catch (const std::system_error& fault) {
+    return fail(ErrorCode::io_failed, "no thread for OSC: " + fault.code().message());
+  }
 }
 
 }  // namespace knotwave::io

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "knotwave/io/sound_file.h"
 
@@ -43,6 +44,32 @@ TEST_F(SynthProgram, WhereAlsaHasNoConfigurationSaysSoAndRecordsAllTheSame) {
   const support::SetVariable read_by_alsa("ALSA_CONFIG_PATH", "/dev/null");
   SynthProcess synth({"small.toml", "--record", "a.wav", "--duration", "0.3"}, here());
   EXPECT_EQ(synth.exit_code(), 0) << synth.err();
+}
+
+TEST_F(SynthProgram, WhereNoThreadIsLeftSaysSoAndEnds) {
+  if (::geteuid() != 0) GTEST_SKIP() << "a user of its own, whose threads are counted, needs root";
+  using Words = std::vector<std::string>;
+  for (const Words& more : {Words{}, Words{"--osc", osc_port()}, Words{"--threads", "3"}}) {
+    for (int most = 1; most <= 6; ++most) {
+      Words words = {"/usr/bin/env",
+                     "setpriv",
+                     "--reuid=54321",
+                     "--clear-groups",
+                     "prlimit",
+                     "--nproc=" + std::to_string(most),
+                     KNOTWAVE_BIN_DIR "/knotwave-synth",
+                     "--audio-api",
+                     "none",
+                     "--duration",
+                     "0.2"};
+      words.insert(words.end(), more.begin(), more.end());
+      const auto done = support::run_program(words);
+      EXPECT_THAT(done.exit_code, testing::AnyOf(0, 1, 75)) << most << ": " << done.err;
+      if (most == 1) {
+        EXPECT_THAT(done.err, HasSubstr("thread"));
+      }
+    }
+  }
 }
 
 /// A disk of 1 MiB: two seconds of sound.

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kLookNs = 100'000'000;
-constexpr std::size_t kMostWaiting = 1 << 15;  // for 20 ms, at most
+constexpr std::size_t kMostWaiting = 1 << 13;  // for 20 ms, at most
 
 void tell(const std::string& line) {
   std::fprintf(stderr, "knotwave-env: %s\n", io::printable(line, 400).c_str());

@@ -142,12 +142,21 @@ void OutputLane::begin_block(std::int64_t first, std::span<const double> values,
 
 void OutputLane::find_change(Ticks from, Ticks until) KNOTWAVE_RT {
   const Ticks start = std::max(from, not_before_);
-  left_at_ = curve_.leaves(band_low(), band_high(), start, until);
+  leaves_at(curve_.leaves(band_low(), band_high(), start, until));
   if (sent_ < 0 || start > until || left_at_ == start) return;
   // An extreme that came and went while the lane could not speak.
   Extremes reached = extremes_;
   reach(reached, seen_ + 1, start >> kTickBits, kNever);
-  if (reached.low.owed_since != kNever || reached.high.owed_since != kNever) left_at_ = start;
+  if (reached.low.owed_since != kNever || reached.high.owed_since != kNever) leaves_at(start);
+}
+
+/// The value of then is looked at now: later it is over.
+void OutputLane::leaves_at(Ticks time) KNOTWAVE_RT {
+  left_at_ = time;
+  if (time == kNever) return;
+  const double v = curve_.at(time);
+  const int step = sent_ < 0 ? nearest_step(v) : v > sent_ ? sent_ + 1 : sent_ - 1;
+  next_step_ = std::clamp(step, 0, top_);
 }
 
 void OutputLane::end_block(std::int64_t n) KNOTWAVE_RT {
@@ -160,10 +169,7 @@ void OutputLane::end_block(std::int64_t n) KNOTWAVE_RT {
 }
 
 Ticks OutputLane::due(const Cable& cable, const Selections& selections) const KNOTWAVE_RT {
-  if (left_at_ == kNever) return kNever;
-  const double v = curve_.at(left_at_);
-  const int step = sent_ < 0 ? nearest_step(v) : v > sent_ ? sent_ + 1 : sent_ - 1;
-  return left_at_ - cost(std::clamp(step, 0, top_), cable, selections);
+  return left_at_ == kNever ? kNever : left_at_ - cost(next_step_, cable, selections);
 }
 
 /// Until the next message of this lane can have come: while it runs, the shortest one that says
@@ -192,8 +198,7 @@ std::optional<OutputLane::Plan> OutputLane::plan(Ticks begin, Ticks until, const
     if (const auto owed = owed_step(reached, made.hold_end)) {
       made.step = *owed;
     } else if (begin != due_at && v >= band_low() && v <= band_high()) {
-      not_before_ = std::max(not_before_, arrival);
-      find_change(arrival, until);
+      wait_from(arrival, until);
       return {};
     }
     const Ticks arrives = begin + cost(made.step, cable, selections);
@@ -202,9 +207,20 @@ std::optional<OutputLane::Plan> OutputLane::plan(Ticks begin, Ticks until, const
     made.hold_end = std::max(made.hold_end, arrives);
   }
   if (made.step != sent_) return made;
-  not_before_ = std::max(not_before_, made.hold_end);
-  find_change(made.hold_end, until);
+  // A message shorter than that of the next step holds up to where the value leaves, not beyond.
+  not_before_ = std::max({not_before_, made.hold_end, left_at_ + kTicksPerSample});
+  find_change(not_before_, until);
   return {};
+}
+
+/// The value is back where the receiver has it. An extreme that is owed stays so where the value is
+/// about to be there again: it is sent when it comes.
+void OutputLane::wait_from(Ticks arrival, Ticks until) KNOTWAVE_RT {
+  not_before_ = std::max(not_before_, arrival);
+  find_change(arrival, until);
+  if (left_at_ != not_before_) return;
+  leaves_at(curve_.leaves(band_low(), band_high(), not_before_, until));
+  if (left_at_ != kNever) not_before_ = left_at_;
 }
 
 /// The mean of what the value does until the next message can have come.

@@ -90,6 +90,8 @@ class OutputLane {
   double band_low() const KNOTWAVE_RT;
   double band_high() const KNOTWAVE_RT;
   void find_change(Ticks from, Ticks until) KNOTWAVE_RT;
+  void wait_from(Ticks arrival, Ticks until) KNOTWAVE_RT;
+  void leaves_at(Ticks time) KNOTWAVE_RT;
   Ticks cost(int step, const Cable& cable, const Selections& selections) const KNOTWAVE_RT;
   Plan mean_plan(Ticks arrival, const Cable& cable) const KNOTWAVE_RT;
   Ticks hold(Ticks arrival, const Cable& cable) const KNOTWAVE_RT;
@@ -110,6 +112,7 @@ class OutputLane {
   bool is_on_its_way_ = false;
   Ticks not_before_ = 0;
   Ticks left_at_ = kNever;
+  int next_step_ = 0;  ///< what it goes to then
   bool has_value_ = false, has_begun_ = false;
   LaneCurve curve_;
   Extremes extremes_;

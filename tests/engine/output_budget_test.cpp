@@ -259,6 +259,8 @@ void check_cases(int count) {
 
 TEST(OutputBudget, HoldsForRandomLanesAndTraffic) { check_cases(support::test_count(20)); }
 TEST(OutputBudget, HoldsWhereABlockEndsWithinAGroupThatOthersInterrupt) { check_case(1, 420); }
+TEST(OutputBudget, HoldsWhereAHalfAloneArrivesBeforeTheValueLeaves) { check_case(1, 425); }
+TEST(OutputBudget, HoldsWhereAChangeWaitsForTheCableOverManyBlocks) { check_case(1, 781); }
 TEST(OutputBudgetStress, HoldsForTenThousandRandomLanesAndTraffics) {
   check_cases(support::test_count(10000));
 }

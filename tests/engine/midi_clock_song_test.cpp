@@ -53,7 +53,7 @@ TEST(MidiClock, ContinueGoesOnWhereTheSongStoppedOrWherePointed) {
   cable.run(11, 120);
   EXPECT_GT(stopped, 0);
   const std::vector<Cable::Position> expected = {
-      cable.positions[0], {pointed_s, std::int64_t{6 * 130}}, {continued_s, again}};
+      cable.positions[0], {pointed_s, std::int64_t{780}}, {continued_s, again}};
   EXPECT_EQ(cable.positions, expected);
   cable.send(11, 0xF2, 4, 0);  // of a song that runs
   const double moved_s = cable.due_s;

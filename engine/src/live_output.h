@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include "knotwave/base/span_ring.h"
 #include "knotwave/base/spsc_ring.h"
 #include "knotwave/engine/live_engine.h"
 
@@ -39,7 +38,7 @@ class LiveTap {
   bool begin_run(std::int64_t time) KNOTWAVE_RT;
 
   std::atomic<bool> wanted_{false};
-  base::SpanRing<Frame> frames_;
+  base::SpscRing<Frame> frames_;
   base::SpscRing<Mark> marks_;
   // The audio thread.
   bool is_on_ = false, in_run_ = false;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "knotwave/base/midi_event.h"
-#include "knotwave/base/span_ring.h"
 #include "knotwave/base/spsc_ring.h"
 
 namespace knotwave::io {
@@ -47,7 +46,7 @@ class MidiQueue {
     std::uint32_t size = 0;  ///< of system exclusive with F0 and F7, which stands in sysex_
   };
   base::SpscRing<Item> items_;
-  base::SpanRing<std::uint8_t> sysex_;
+  base::SpscRing<std::uint8_t> sysex_;
   std::atomic<std::int64_t> taken_{0};
   std::vector<std::uint8_t> bytes_;  ///< of front()
   Message front_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Run in the tsan preset as well: the two-thread test is there to be raced.
-#include "knotwave/base/span_ring.h"
+#include "knotwave/base/spsc_ring.h"
 
 #include <array>
 #include <cstdint>
@@ -15,8 +15,8 @@
 namespace knotwave::base {
 namespace {
 
-TEST(SpanRing, TakesWhatFitsAndGivesWhatIsThere) {
-  SpanRing<int> ring(5);
+TEST(SpscRing, TakesWhatFitsAndGivesWhatIsThere) {
+  SpscRing<int> ring(5);
   EXPECT_EQ(ring.capacity(), 8u);
   std::array<int, 6> in{}, out{};
   std::iota(in.begin(), in.end(), 1);
@@ -32,8 +32,8 @@ TEST(SpanRing, TakesWhatFitsAndGivesWhatIsThere) {
   EXPECT_EQ(ring.read(all), 0u);
 }
 
-TEST(SpanRing, TwoThreadsSeeEveryItemInOrderInRunsOfAnyLength) {
-  SpanRing<std::uint64_t> ring(64);
+TEST(SpscRing, TwoThreadsSeeEveryItemInOrderInRunsOfAnyLength) {
+  SpscRing<std::uint64_t> ring(64);
   const auto count = static_cast<std::uint64_t>(support::test_count(1000000));
   std::thread producer([&] {
     std::vector<std::uint64_t> run(50);

@@ -201,9 +201,9 @@ TEST_F(EnvOnJack, SendsEachValueWhenTheVirtualClockSaysAndRestsAtTheEnd) {
     std::printf("%-12s excess: median %.2f, 99 %% %.2f frames\n", api,
                 program.median() - loop_back.median(), program.part(0.99) - loop_back.part(0.99));
     EXPECT_LE(loop_back.part(1), 1);
-    // RtMidi knows no frames: what it sends stands where the block does.
+    // RtMidi knows no frames: what it sends stands where the block does, some 60 frames off.
     if (std::string(api) == "jack") {
-      EXPECT_LE(program.median() - loop_back.median(), 2);
+      EXPECT_LE(program.median() - loop_back.median(), 8);
     }
   }
 }

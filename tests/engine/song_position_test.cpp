@@ -88,15 +88,17 @@ depth = 1
 )";
   const auto bank = bank_from(std::string(kPlain) + std::string(kPulse) + std::string(kRate));
   const auto engine = engine_for(*bank);
-  // Twice as fast from 0 on: up until 12000, from 24000 until 36000; the song begins at 42000.
+  // Twice as fast from 12000 on: up until 18000, from 30000 until 42000; the song begins at 50000.
   const Sound sound =
-      play(*engine, {tempo(0, 1000000), control(0, 0, 1, 127), on(10, 0, 69), position(42000, 0)},
-           90000);
-  EXPECT_TRUE(is_up(sound, 30000));
-  EXPECT_FALSE(is_up(sound, 39000));
-  EXPECT_TRUE(is_up(sound, 45000));
-  EXPECT_FALSE(is_up(sound, 57000));
-  EXPECT_TRUE(is_up(sound, 69000));
+      play(*engine,
+           {tempo(0, 1000000), on(0, 0, 69), control(12000, 0, 1, 127), position(50000, 0)}, 90000);
+  EXPECT_TRUE(is_up(sound, 9000));
+  EXPECT_FALSE(is_up(sound, 24000));
+  EXPECT_TRUE(is_up(sound, 36000));
+  EXPECT_FALSE(is_up(sound, 46000));
+  EXPECT_TRUE(is_up(sound, 53000));
+  EXPECT_FALSE(is_up(sound, 65000));
+  EXPECT_TRUE(is_up(sound, 77000));
 }
 
 TEST(SongPosition, LeavesWhatBeganWithANoteAlone) {

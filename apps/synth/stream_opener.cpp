@@ -38,7 +38,7 @@ void StreamOpener::begin(const io::AudioConfig& config, io::AudioClient& client)
       std::optional<Opened> opened = io::AudioStream::open(config, client);
       {
         const std::lock_guard lock(shared->mutex);
-        if (shared->is_wanted) shared->opened = std::move(opened);
+        if (shared->is_wanted) shared->opened = std::exchange(opened, std::nullopt);
       }
       opened.reset();
       --tries_under_way;

@@ -32,5 +32,4 @@ const void* factory(const char* id) {
 
 }  // namespace
 
-extern "C" CLAP_EXPORT const clap_plugin_entry clap_entry;
 const clap_plugin_entry clap_entry = {CLAP_VERSION, init, deinit, factory};

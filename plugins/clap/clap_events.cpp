@@ -2,6 +2,7 @@
 #include "clap_events.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "knotwave/engine/channel_state.h"
 #include "knotwave/plugins/parameters.h"
@@ -22,7 +23,7 @@ void add_midi(Instrument& instrument, std::int64_t sample, int status, int one,
 }
 
 int seven_bits(double unit) KNOTWAVE_RT {
-  return unit == unit ? static_cast<int>(std::clamp(unit, 0.0, 1.0) * 127 + 0.5) : 0;
+  return unit == unit ? static_cast<int>(std::floor(std::clamp(unit, 0.0, 1.0) * 127 + 0.5)) : 0;
 }
 
 /// A channel or key of -1 means all of them: keys are then lifted or silenced by the channel.

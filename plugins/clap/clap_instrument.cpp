@@ -201,8 +201,9 @@ ClapInstrument::ClapInstrument(const clap_host* of_host) : host(of_host) {
   plugin.on_main_thread = [](const clap_plugin* of) { instrument_of(of).collect(); };
 }
 
-const char* const kFeatures[] = {CLAP_PLUGIN_FEATURE_INSTRUMENT, CLAP_PLUGIN_FEATURE_SYNTHESIZER,
-                                 CLAP_PLUGIN_FEATURE_STEREO, nullptr};
+constexpr const char* kFeatures[] = {CLAP_PLUGIN_FEATURE_INSTRUMENT,
+                                     CLAP_PLUGIN_FEATURE_SYNTHESIZER, CLAP_PLUGIN_FEATURE_STEREO,
+                                     nullptr};
 
 }  // namespace
 

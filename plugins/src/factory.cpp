@@ -37,13 +37,13 @@ std::vector<engine::FileText> files() {
 }  // namespace
 
 std::span<const Preset> factory_presets() {
-  static const std::vector<Preset> kPresets = presets();
-  return kPresets;
+  static const std::vector<Preset> all_presets = presets();
+  return all_presets;
 }
 
 std::span<const engine::FileText> factory_files() {
-  static const std::vector<engine::FileText> kFiles = files();
-  return kFiles;
+  static const std::vector<engine::FileText> all_files = files();
+  return all_files;
 }
 
 }  // namespace knotwave::plugins

@@ -112,8 +112,8 @@ std::string_view trimmed(std::string_view text) {
 }  // namespace
 
 std::span<const Parameter> parameters() {
-  static const std::vector<Parameter> kTable = table();
-  return kTable;
+  static const std::vector<Parameter> all = table();
+  return all;
 }
 
 std::size_t parameter_of_id(std::uint32_t id) { return find(&Parameter::id, id); }

@@ -16,12 +16,12 @@ clap_event_header header(std::uint32_t sample, int type, std::size_t size) {
 }
 
 const void* host_extension(const clap_host*, const char* id) {
-  static const clap_host_params kParams{[](const clap_host* host, clap_param_rescan_flags) {
-                                          ++static_cast<HostCalls*>(host->host_data)->rescans;
-                                        },
-                                        [](const clap_host*, clap_id, clap_param_clear_flags) {},
-                                        [](const clap_host*) {}};
-  return std::strcmp(id, CLAP_EXT_PARAMS) == 0 ? &kParams : nullptr;
+  static const clap_host_params params{[](const clap_host* host, clap_param_rescan_flags) {
+                                         ++static_cast<HostCalls*>(host->host_data)->rescans;
+                                       },
+                                       [](const clap_host*, clap_id, clap_param_clear_flags) {},
+                                       [](const clap_host*) {}};
+  return std::strcmp(id, CLAP_EXT_PARAMS) == 0 ? &params : nullptr;
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ constexpr const char* kPath = KNOTWAVE_BIN_DIR "/../plugins/clap/knotwave.clap";
 constexpr const char* kId = "org.knotwave.instrument";
 
 const ClapLibrary& library() {
-  static const ClapLibrary kLibrary(kPath);
-  return kLibrary;
+  static const ClapLibrary opened(kPath);
+  return opened;
 }
 std::unique_ptr<ClapPlugin> plugin() {
   return std::make_unique<ClapPlugin>(library().factory(), kId);
@@ -218,6 +218,7 @@ TEST(Clap, ManyEventsAtOneSampleAreAllPlayed) {
   const auto played = plugin();
   ASSERT_TRUE(played->start(48000, 512));
   std::vector<ClapEvent> events;
+  events.reserve(5002);
   for (int i = 0; i < 5000; ++i) events.push_back(clap_value(0, id_of("pan"), 0.001 * (i % 900)));
   events.push_back(clap_note(0, CLAP_EVENT_NOTE_ON, 0, 60, 1));
   events.push_back(clap_note(0, CLAP_EVENT_NOTE_OFF, 0, 60, 1));
@@ -361,6 +362,7 @@ TEST(Clap, RandomEventsOfAnyKindLeaveNoNoteAndNoNan) {
     for (const float x : sound.left) ASSERT_TRUE(std::isfinite(x));
   }
   std::vector<ClapEvent> end;
+  end.reserve(17);
   for (int channel = 0; channel < 16; ++channel) {
     end.push_back(clap_midi(0, 0xB0 | channel, 121, 0));
   }

@@ -58,11 +58,14 @@ void CvStream::handle(const Heard& heard) KNOTWAVE_RT {
   event.midi.time = {player_->now(), 0};
   engine::MidiClock& clock = clocks_[heard.event.port % clocks_.size()];
   const std::uint8_t status = heard.event.bytes[0];
-  if ((status == 0xF8 || status == 0xF2 || (status >= 0xFA && status <= 0xFC)) &&
-      clock.handle(event.midi).tempo) {
-    engine::Event tempo = clock.tempo_event();
-    tempo.midi.time = event.midi.time;
-    player_->handle(tempo);
+  if (status == 0xF8 || status == 0xF2 || (status >= 0xFA && status <= 0xFC)) {
+    const engine::MidiClock::News news = clock.handle(event.midi);
+    const auto tell = [&](engine::Event told) KNOTWAVE_RT {
+      told.midi.time = event.midi.time;
+      player_->handle(told);
+    };
+    if (news.tempo) tell(clock.tempo_event());
+    if (news.position) tell(clock.position_event());
   }
   player_->handle(event);
 }

@@ -79,7 +79,7 @@ void EnvelopePlayer::handle(const Event& event) KNOTWAVE_RT {
       s.settle_mono(time, 64);
       break;
     case Event::Kind::position:
-      s.place_song(static_cast<double>(event.song_clocks) / kSongClocksPerQuarter, time);
+      s.mend_song(static_cast<double>(event.song_clocks) / kSongClocksPerQuarter, time);
       break;
     case Event::Kind::install_bank:
     case Event::Kind::set_target:

@@ -89,6 +89,14 @@ void EnvelopePlayer::State::place_song(double beats, base::SampleTime time) KNOT
   clock.seek(beats);
 }
 
+/// What a clock knows of the song better than the tempo did: an open gate stays open, and the next
+/// opening comes where it belongs. From a quarter note on it is another place.
+void EnvelopePlayer::State::mend_song(double beats, base::SampleTime time) KNOTWAVE_RT {
+  constexpr double kOtherPlace = 1;
+  if (std::abs(beats - tempo.beats_at(time)) >= kOtherPlace) return place_song(beats, time);
+  tempo.set_position(time, beats);
+}
+
 // The first clock after Start is the song's beginning (MIDI 1.0). Where clocks came before Start it
 // is waited for; where none did, the division began with Start, and does not begin again.
 void EnvelopePlayer::State::hear_clock(base::SampleTime time) KNOTWAVE_RT {

@@ -82,6 +82,7 @@ struct EnvelopePlayer::State {
   void start_song(base::SampleTime time) KNOTWAVE_RT;
   void continue_song(base::SampleTime time) KNOTWAVE_RT;
   void stop_song(base::SampleTime time) KNOTWAVE_RT;
+  void mend_song(double beats, base::SampleTime time) KNOTWAVE_RT;
   void place_song(double beats, base::SampleTime time) KNOTWAVE_RT;
   void hear_clock(base::SampleTime time) KNOTWAVE_RT;
 

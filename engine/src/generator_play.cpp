@@ -82,9 +82,10 @@ void EnvelopeGenerator::State::take_event(const Event& event) KNOTWAVE_RT {
   for (LaneRow& row : rows) row.still = 0;
   if (event.kind == Event::Kind::midi) {
     post_thru(event.midi);
-    if (clock.handle(event.midi).tempo) {
-      const Event tempo = clock.tempo_event();
-      for (auto& player : players) player->handle(tempo);
+    const MidiClock::News news = clock.handle(event.midi);
+    for (auto& player : players) {
+      if (news.tempo) player->handle(clock.tempo_event());
+      if (news.position) player->handle(clock.position_event());
     }
   }
   for (std::size_t i = 0; i < players.size(); ++i) {

@@ -392,6 +392,9 @@ TEST(EnvelopeGenerator, AMidiClockSetsTheTempoOfAClockDivision) {
   ASSERT_GE(ends.size(), 14u);
   for (std::size_t i = ends.size() / 2; i < ends.size(); ++i) {
     EXPECT_NEAR(ends[i] - ends[i - 1], 60.0 / 90, 0.003);
+    // The song began with the first clock, although the tempo was known half a quarter later.
+    const double beat = std::round((ends[i] - 0.05) * 90 / 60);
+    EXPECT_NEAR(ends[i], beat * 60 / 90 + 0.05, 0.004);
   }
   EXPECT_NEAR(rig.generator->clock_status().bpm, 90, 0.01);
 }

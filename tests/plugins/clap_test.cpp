@@ -255,6 +255,20 @@ TEST(Clap, AStateComesBackWholeAlsoInPiecesOf17Bytes) {
   EXPECT_EQ(two->play(notes, 4800, 480), three->play(notes, 4800, 480));
 }
 
+// States of sessions load for ever: files are added, none changes.
+TEST(Clap, EveryStateThatWasEverWrittenIsRead) {
+  const auto text =
+      base::read_file(KNOTWAVE_SOURCE_DIR "/tests/plugins/states/version_0_1_0.journal", 1 << 20);
+  ASSERT_TRUE(text) << text.error().message;
+  const auto played = plugin();
+  ASSERT_TRUE(played->load(*text));
+  EXPECT_EQ(played->save(), *text);
+  double value = 0;
+  played->extension<clap_plugin_params>(CLAP_EXT_PARAMS)
+      ->get_value(played->get(), id_of("moved.32"), &value);
+  EXPECT_EQ(value, 0.5);
+}
+
 TEST(Clap, ADamagedStateIsRefusedAndNothingChanges) {
   const auto played = plugin();
   const std::string state = played->save();

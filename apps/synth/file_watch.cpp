@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "file_watch.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
 #include <set>
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kQuietNs = 30'000'000;
 constexpr std::int64_t kMostTouchedNs = 200'000'000;
 constexpr std::int64_t kLookNs = 1'000'000'000;
+constexpr std::int64_t kGoneNs = 500'000'000;
 constexpr std::uint32_t kSaved = IN_CLOSE_WRITE | IN_MOVED_TO;
 
 fs::path absolute(const std::string& path) {
@@ -54,14 +56,14 @@ FileWatch::Signature FileWatch::signature_of(const std::string& path) {
 
 void FileWatch::watch(const std::vector<std::string>& paths) {
   std::set<std::string> wanted;
-  std::map<std::string, Signature> files;
+  std::map<std::string, File> files;
   for (const std::string& path : paths) {
     // Both ends of a link: either may be saved.
     const fs::path whole = absolute(path);
     for (const fs::path& place : {whole, resolved(whole)}) {
       const std::string name = place.string();
       const auto known = files_.find(name);
-      files[name] = known != files_.end() ? known->second : signature_of(name);
+      files[name] = known != files_.end() ? known->second : File{path, signature_of(name)};
       wanted.insert(place.parent_path().string());
     }
   }
@@ -94,22 +96,41 @@ bool FileWatch::read_events(bool any_in_folders) {
   }
 }
 
-bool FileWatch::look_at_files() {
+bool FileWatch::look_at_files(std::int64_t now_ns) {
   bool is_changed = false;
-  for (auto& [path, known] : files_) {
+  for (auto& [path, file] : files_) {
     const Signature now = signature_of(path);
-    if (now.size < 0 || now == known) continue;
-    known = now;
+    if (now.size < 0) {
+      if (file.gone_ns < 0) file.gone_ns = now_ns;
+      if (file.is_told_gone || now_ns - file.gone_ns < kGoneNs) continue;
+      file.is_told_gone = true;
+      note_presence(file.given, false);
+      continue;
+    }
+    const bool is_back = std::exchange(file.gone_ns, -1) >= 0;
+    if (std::exchange(file.is_told_gone, false)) note_presence(file.given, true);
+    if (!is_back && now == file.known) continue;
+    file.known = now;
     is_changed = true;
   }
   return is_changed;
 }
 
+/// Once, though both ends of a link go and come.
+void FileWatch::note_presence(const std::string& path, bool is_there) {
+  const bool is_noted = std::any_of(presence_.begin(), presence_.end(), [&](const Presence& p) {
+    return p.path == path && p.is_there == is_there;
+  });
+  if (!is_noted) presence_.push_back({path, is_there});
+}
+
+std::vector<FileWatch::Presence> FileWatch::take_presence() { return std::exchange(presence_, {}); }
+
 bool FileWatch::is_changed(std::int64_t now_ns, bool any_in_folders) {
   bool is_seen = read_events(any_in_folders);
   if (is_seen || now_ns - looked_ns_ >= kLookNs) {
     looked_ns_ = now_ns;
-    is_seen = look_at_files() || is_seen;
+    is_seen = look_at_files(now_ns) || is_seen;
   }
   if (is_seen) {
     if (!is_touched_) first_touched_ns_ = now_ns;

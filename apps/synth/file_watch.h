@@ -11,7 +11,8 @@ namespace knotwave::synth {
 
 /// inotify on the folders the files are in, and a look at the files themselves now and then: where
 /// inotify does not reach (network file systems, the far end of a link) a change is seen a second
-/// later. A file that vanishes is no change; its return is.
+/// later. A file that vanishes is no change; its return is. One that stays away is told by
+/// take_presence().
 class FileWatch {
  public:
   FileWatch();
@@ -25,6 +26,14 @@ class FileWatch {
   /// for 0.2 s; then false until the next time. With `any_in_folders`, every file in their folders
   /// counts.
   bool is_changed(std::int64_t now_ns, bool any_in_folders = false);
+  struct Presence {
+    std::string path;  ///< as watch() was given it
+    bool is_there = false;
+  };
+  /// Which files have gone since it was asked last, and which of them came again: those that were
+  /// away for half a second and a look, so nobody's way to save is among them. Call is_changed()
+  /// before.
+  std::vector<Presence> take_presence();
   /// For poll(); -1 without inotify.
   int descriptor() const { return inotify_; }
 
@@ -37,11 +46,19 @@ class FileWatch {
   };
   static Signature signature_of(const std::string& path);
   bool read_events(bool any_in_folders);
-  bool look_at_files();
+  bool look_at_files(std::int64_t now_ns);
+  void note_presence(const std::string& path, bool is_there);
 
   int inotify_;
   std::map<int, std::string> folders_;  ///< by watch descriptor
-  std::map<std::string, Signature> files_;
+  struct File {
+    std::string given;  ///< its path in the caller's words
+    Signature known;
+    std::int64_t gone_ns = -1;  ///< not there since; -1: it is there
+    bool is_told_gone = false;
+  };
+  std::map<std::string, File> files_;
+  std::vector<Presence> presence_;
   std::int64_t first_touched_ns_ = 0, touched_ns_ = 0, looked_ns_ = 0;
   bool is_touched_ = false;
 };

@@ -47,30 +47,34 @@ PatchWatch::PatchWatch(const PlayableBank& bank) : path_(bank.path), tried_(bank
 PatchWatch::News PatchWatch::poll(std::int64_t now_ns) {
   // While it is broken, the file that heals it may be one it does not name yet.
   if (files_.is_changed(now_ns, is_broken_) && !is_trying_) loader_.request(path_);
+  News news;
+  for (const FileWatch::Presence& file : files_.take_presence()) {
+    news.lines.push_back(file.path +
+                         (file.is_there ? " is there again" : " is gone; the old sound plays on"));
+  }
   auto loaded = loader_.take();
-  if (!loaded) return {};
+  if (!loaded) return news;
   if (loaded->path == tried_) is_trying_ = false;
   if (loaded->bank) {
     path_ = loaded->path;
-    return installed(std::move(loaded->bank).value());
+    installed(std::move(loaded->bank).value(), news);
+    return news;
   }
   const bool is_other = loaded->path != path_;
   Error error = std::move(loaded->bank).error();
   if (error.source.empty()) error.source = loaded->path;
   is_broken_ = is_broken_ || !is_other;
-  News news;
-  news.lines = {error.to_string(), (is_other ? path_ : "the old sound") + " plays on"};
+  news.lines.push_back(error.to_string());
+  news.lines.push_back((is_other ? path_ : "the old sound") + " plays on");
   return news;
 }
 
-PatchWatch::News PatchWatch::installed(PlayableBank bank) {
-  News news;
-  news.lines = bank.input.warnings;
+void PatchWatch::installed(PlayableBank bank, News& news) {
+  news.lines.insert(news.lines.end(), bank.input.warnings.begin(), bank.input.warnings.end());
   news.lines.push_back("now playing " + path_);
   is_broken_ = false;
   files_.watch(files_of(bank));
   news.bank = std::move(bank);
-  return news;
 }
 
 void PatchWatch::load(const std::string& path) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which patch plays, and what happens to it on the disk: a saved change is compiled beside the
-// sound; what is broken is told and the old one plays on.
+// sound; what is broken or gone is told and the old one plays on.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -36,7 +36,7 @@ class PatchWatch {
   const std::string& path() const { return path_; }
 
  private:
-  News installed(PlayableBank bank);
+  void installed(PlayableBank bank, News& news);
 
   std::string path_;   ///< of what plays
   std::string tried_;  ///< what load() was given last, good or broken

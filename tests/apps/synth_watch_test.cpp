@@ -162,6 +162,66 @@ TEST_F(PatchWatches, TheFileThatIsMissingHealsThePatchWhenItComes) {
   EXPECT_TRUE(news_of(watch).bank.has_value());
 }
 
+TEST_F(PatchWatches, APatchThatIsGoneIsToldOnceAndSoIsItsReturn) {
+  const auto bank = read_playable(file("small.toml"));
+  PatchWatch watch(*bank);
+  std::int64_t clock_ns = now_ns();  // of the test's own: 5 s of looks, 0.1 s apart
+  const auto told_in_5_s = [&] {
+    std::vector<std::string> lines;
+    for (int i = 0; i < 50; ++i) {
+      clock_ns += 100'000'000;
+      for (auto& line : watch.poll(clock_ns).lines) lines.push_back(std::move(line));
+    }
+    return lines;
+  };
+  EXPECT_THAT(told_in_5_s(), IsEmpty());
+  std::filesystem::rename(file("small.toml"), file("away"));
+  EXPECT_THAT(told_in_5_s(),
+              testing::ElementsAre(file("small.toml") + " is gone; the old sound plays on"));
+  EXPECT_THAT(told_in_5_s(), IsEmpty()) << "once";
+  std::filesystem::rename(file("away"), file("small.toml"));
+  std::vector<std::string> lines = told_in_5_s();
+  EXPECT_THAT(lines, Contains(file("small.toml") + " is there again"));
+  happens([&] {
+    const auto news = watch.poll(clock_ns);
+    lines.insert(lines.end(), news.lines.begin(), news.lines.end());
+    return lines.size() >= 2;
+  });
+  EXPECT_THAT(lines, testing::ElementsAre(file("small.toml") + " is there again",
+                                          "now playing " + file("small.toml")));
+}
+
+TEST_F(PatchWatches, ALinkWhoseFarEndIsGoneIsToldOnceByItsOwnName) {
+  std::filesystem::create_directory(file("far"));
+  overwrite("far/patch.toml", render::kSmallPatch);
+  std::filesystem::create_symlink("far/patch.toml", file("link.toml"));
+  const auto bank = read_playable(file("link.toml"));
+  ASSERT_TRUE(bank.has_value()) << bank.error().to_string();
+  PatchWatch watch(*bank);
+  std::filesystem::remove(file("far/patch.toml"));
+  std::vector<std::string> lines;
+  const std::int64_t start_ns = now_ns();
+  for (std::int64_t i = 0; i < 50; ++i) {
+    for (auto& line : watch.poll(start_ns + i * 100'000'000).lines) lines.push_back(line);
+  }
+  EXPECT_THAT(lines, testing::ElementsAre(file("link.toml") + " is gone; the old sound plays on"));
+}
+
+TEST_F(PatchWatches, AFileThatIsAwayForAMomentIsNotTold) {
+  const auto bank = read_playable(file("small.toml"));
+  PatchWatch watch(*bank);
+  std::int64_t clock_ns = now_ns() + 10'000'000'000;
+  std::filesystem::rename(file("small.toml"), file("small.toml~"));
+  EXPECT_THAT(watch.poll(clock_ns).lines, IsEmpty()) << "the look that misses it";
+  overwrite("small.toml", render::kSmallPatch);
+  clock_ns += 1'000'000'000;
+  for (int i = 0; i < 5; ++i) {
+    for (const std::string& line : watch.poll(clock_ns + i * 50'000'000).lines) {
+      EXPECT_EQ(line, "now playing " + file("small.toml"));
+    }
+  }
+}
+
 TEST_F(PatchWatches, TheNextPatchGoesRoundTheFolderPastWhatIsNone) {
   for (const char* name : {"a.toml", "z.toml"}) overwrite(name, render::kSmallPatch);
   overwrite("b-curves.toml", "format = 1\nkind = \"curve\"\n");

@@ -231,7 +231,8 @@ Live::End Live::run(const std::atomic<int>& signals) {
 }
 
 std::string device_list() {
-  return synth::device_table(io::list_audio_devices(), io::list_midi_ports());
+  return synth::device_table(io::list_audio_devices(), io::list_midi_ports(),
+                             "only control voltage needs one, MIDI and OSC do not");
 }
 
 }  // namespace knotwave::env

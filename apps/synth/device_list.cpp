@@ -33,7 +33,8 @@ std::string ports(const char* title, const std::vector<io::MidiPortInfo>& list) 
 
 }  // namespace
 
-std::string device_table(const io::AudioDeviceList& sound, const io::MidiPortList& midi) {
+std::string device_table(const io::AudioDeviceList& sound, const io::MidiPortList& midi,
+                         const std::string& without_sound) {
   std::string text = "Sound devices (--audio-device NUMBER or part of a name; --audio-api)\n";
   for (const auto& device : sound.devices) {
     text += padded((device.is_default ? "* " : "  ") + std::to_string(device.number), 5) +
@@ -42,7 +43,9 @@ std::string device_table(const io::AudioDeviceList& sound, const io::MidiPortLis
             std::to_string(std::lround(device.rate_hz)) + " Hz\n";
   }
   if (sound.devices.empty()) {
-    text += "  none; --record FILE.wav plays into a file, --audio-api none for nobody\n";
+    text += "  none; " + without_sound + "\n";
+  } else {
+    text += "  * is played to where its API is chosen and no device; the first *, without either\n";
   }
   text += notes(sound.notes);
   text += ports("MIDI inputs (--midi-in part of a name; --midi-api)", midi.inputs);
@@ -52,7 +55,8 @@ std::string device_table(const io::AudioDeviceList& sound, const io::MidiPortLis
 
 std::string device_list() {
   const WaitNotice notice("waiting for a sound server that does not answer yet");
-  return device_table(io::list_audio_devices(), io::list_midi_ports());
+  return device_table(io::list_audio_devices(), io::list_midi_ports(),
+                      "--record FILE.wav plays into a file, --audio-api none for nobody");
 }
 
 }  // namespace knotwave::synth

@@ -9,7 +9,9 @@
 namespace knotwave::synth {
 
 /// Sound devices with their numbers, MIDI ports, and why an API has none, as a table.
-std::string device_table(const io::AudioDeviceList& sound, const io::MidiPortList& midi);
+/// `without_sound` says what the program does without a sound device.
+std::string device_table(const io::AudioDeviceList& sound, const io::MidiPortList& midi,
+                         const std::string& without_sound);
 /// The same of this machine, just now.
 std::string device_list();
 

@@ -2,7 +2,9 @@
 // The only file of knotwave-synth that knows CLI11.
 #include "options.h"
 
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -108,16 +110,15 @@ void add_playing(CLI::App& app, SynthOptions& o) {
   add_text(app, {"PATCH", "patch or bank to play (.toml)", ""}, o.patch);
   add_text(app, {"--demo", "play a built-in demo, its song and its patch: " + demo_names(), "NAME"},
            o.demo);
-  add_text(app,
-           {"--song", "play this MIDI file (.mid) with the patch, once, from the start", "FILE"},
+  add_text(app, {"--song", "play this MIDI file (.mid) with PATCH, once, from the start", "FILE"},
            o.song);
   add_number(app, {"--volume", "of everything, in dB", "DB"}, o.volume_db, -96.0, 24.0);
   add_number(app, {"--threads", "threads to render with; changes no sample", ""}, o.threads, 1, 64);
   add_number(app, {"--seed", "seed of everything random", ""}, o.seed);
   add_text(app,
            {"--record",
-            "record what is heard into this .wav or .flac, with .journal and .mid beside it; needs "
-            "no sound device",
+            "record what is heard into this .wav or .flac, with .journal and .mid beside it, in "
+            "place of older ones once it is whole; needs no sound device",
             "FILE"},
            o.record);
   add_number(app, {"--duration", "end by itself after this time", "SECONDS"}, o.duration_s, 0.001,
@@ -144,6 +145,14 @@ void add_control(CLI::App& app, SynthOptions& o) {
       {std::begin(kSimdNames), std::end(kSimdNames)}, [&o](std::size_t i) { o.simd = kSimdOf[i]; });
 }
 
+/// A take has a FILE.mid beside it, which would take the song's place.
+bool is_song_written_over(const SynthOptions& o) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  return !o.record.empty() && !o.song.empty() &&
+         fs::equivalent(fs::path(o.record).replace_extension(".mid"), o.song, failed);
+}
+
 /// What is wrong with values that are each good in themselves; empty when nothing is.
 std::string conflict(const SynthOptions& o) {
   if (!o.demo.empty() && !o.patch.empty()) {
@@ -166,6 +175,10 @@ std::string conflict(const SynthOptions& o) {
   const bool is_sound = base::has_ending(o.record, ".wav") || base::has_ending(o.record, ".flac");
   if (!o.record.empty() && !is_sound) {
     return "--record: '" + o.record + "' ends neither in .wav nor in .flac";
+  }
+  if (is_song_written_over(o)) {
+    return "--record '" + o.record + "' writes a .mid of its own over the song '" + o.song +
+           "'; give the take another name";
   }
   if (o.audio_api == "none" && !o.audio_device.empty()) {
     return "--audio-api none has no devices; leave out --audio-device '" + o.audio_device + "'";

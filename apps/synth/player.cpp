@@ -93,7 +93,12 @@ Result<void> Player::open_stream(const PlayerConfig& config) {
     return {};
   }
   const bool may_do_without = config.plays_without_device && !is_device_chosen(config.audio);
-  if (!may_do_without || stream.error().code != ErrorCode::unsupported) return stream.error();
+  if (stream.error().code != ErrorCode::unsupported) return stream.error();
+  if (!may_do_without) {
+    Error error = stream.error();
+    error.message += "; or record without one: --audio-api none --record FILE";
+    return error;
+  }
   first_lines_.push_back(stream.error().message + "; playing without a device");
   lost_format_.rate_hz = config.audio.rate_hz;
   return open_substitute();

@@ -34,6 +34,12 @@ PlayerConfig player_config(const SynthOptions& o) {
   return config;
 }
 
+std::string joined(const std::vector<std::string>& names) {
+  std::string line;
+  for (const std::string& name : names) line += (line.empty() ? "" : ", ") + name;
+  return line;
+}
+
 engine::LiveMessage channel_message(int status, int first, int second, std::int64_t now_ns) {
   engine::LiveMessage message;
   message.time_ns = now_ns;
@@ -273,11 +279,12 @@ Result<void> Synth::begin_take() {
   const std::string wanted = options_.record.empty() ? "take.wav" : options_.record;
   const bool is_named = !options_.record.empty() && takes_ == 1;
   const std::string path = is_named ? wanted : free_take_path(wanted, takes_);
+  const bool is_there = !take_files_there(path).empty();
   auto recorder = Recorder::start(player_->live(), path, player_->rate_hz(),
                                   is_named ? options_.duration_s : 0);
   if (!recorder) return recorder.error();
   recorder_ = *std::move(recorder);
-  tell("recording " + path);
+  tell("recording " + path + (is_there ? "; the take that is there stays until it ends" : ""));
   return {};
 }
 
@@ -297,12 +304,15 @@ std::vector<std::string> Synth::write_beside(const Recorder::Take& take) {
 void Synth::end_take() {
   if (!recorder_) return;
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
+  const std::vector<std::string> replaced = take_files_there(recorder->path());
   const auto take = recorder->finish();
   if (!take) {
     has_failed_ = true;
     return tell("the take is lost: " + take.error().to_string());
   }
-  tell_all(write_beside(*take));
+  const std::vector<std::string> faults = write_beside(*take);
+  tell_all(faults);
+  if (faults.empty() && !replaced.empty()) tell(joined(replaced) + ": replaced");
   if (!take->fault.empty()) {
     has_failed_ = true;
     tell("the take ends here: " + take->fault);

@@ -37,11 +37,9 @@ std::string reasons(const FoundDevices& found) {
 
 Error no_device(const FoundDevices& found, const std::string& api) {
   const std::string which = api.empty() ? "" : " of " + api;
-  return fail(ErrorCode::unsupported,
-              "no sound device" + which +
-                  ": start a JACK or PipeWire server, plug one in, or record without one: "
-                  "--audio-api none --record FILE" +
-                  reasons(found));
+  return fail(ErrorCode::unsupported, "no sound device" + which +
+                                          ": start a JACK or PipeWire server, or plug one in" +
+                                          reasons(found));
 }
 
 Error unknown_api(const FoundDevices& found, const std::string& api) {

@@ -61,9 +61,7 @@ void count_devices(FoundDevices& found) {
 
 // PortAudio is a client of that server, too, whatever device it plays, and would wait for good.
 Error server_hangs() {
-  return fail(ErrorCode::unsupported,
-              "the JACK server does not answer: end it or start it anew, or record without one: "
-              "--audio-api none --record FILE");
+  return fail(ErrorCode::unsupported, "the JACK server does not answer: end it or start it anew");
 }
 
 // A server that runs without a device of its own can be asked for by its name.

@@ -60,7 +60,7 @@ JackClient JackClient::open(const std::string& name, std::string& why) {
   JackClient client;
   client.ticket_ = JackTicket::take();
   if (!client.ticket_) {
-    why = "a client of ours that lost its server is still open: try again";
+    why = "its server has gone";
     return client;
   }
   jack_status_t status{};

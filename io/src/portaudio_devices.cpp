@@ -85,7 +85,7 @@ void set_jack_name(const std::string& name) {
 
 PortAudioUse::PortAudioUse(const std::string& client_name) : ticket_(JackTicket::take()) {
   if (!ticket_) {
-    error_ = "portaudio: a JACK client of ours that lost its server is still open: try again";
+    error_ = "portaudio: the JACK server has gone";
     return;
   }
   error_ = alsa_fault();

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Command lines of knotwave-synth that are wrong, each with its answer.
+#include <filesystem>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "apps/render_scene.h"
+#include "device_list.h"
 #include "support/program.h"
 
 namespace {
 
 using knotwave::support::run_program;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string answer(std::vector<std::string> words) {
   words.insert(words.begin(), "knotwave-synth");
@@ -68,6 +73,49 @@ TEST(SynthCommandLine, ATakeThatCannotBeWrittenIsToldOnce) {
   EXPECT_EQ(done.err,
             "knotwave-synth: error: cannot write into folder '/no such': No such file or "
             "directory\n");
+}
+
+class SynthTakes : public knotwave::render::RenderScene {
+ protected:
+  std::string recorded(std::vector<std::string> more = {}) {
+    std::vector<std::string> words = {"knotwave-synth", file("small.toml"), "--audio-api", "none",
+                                      "--record",       file("take.wav"),   "--duration",  "0.1"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto done = run_program(words);
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return done.err;
+  }
+};
+
+TEST_F(SynthTakes, AnOldTakeIsToldWhenItsPlaceIsTaken) {
+  EXPECT_THAT(recorded(), Not(HasSubstr("replaced")));
+  const std::string again = recorded();
+  EXPECT_THAT(again, HasSubstr("recording " + file("take.wav") +
+                               "; the take that is there stays until it ends\n"));
+  EXPECT_THAT(again,
+              HasSubstr(file("take.wav") + ", " + file("take.journal") + ", " + file("take.mid") +
+                        ": replaced\n" + file("take.wav") + ": 0:00.1, "));
+  std::filesystem::remove(file("take.wav"));
+  std::filesystem::remove(file("take.journal"));
+  EXPECT_THAT(recorded(), HasSubstr("\n" + file("take.mid") + ": replaced\n"));
+}
+
+TEST_F(SynthTakes, ASongIsNotWrittenOverByTheTakeOfItsName) {
+  EXPECT_EQ(
+      answer({file("small.toml"), "--song", file("small.mid"), "--record", file("small.wav")}),
+      told("--record '" + file("small.wav") + "' writes a .mid of its own over the song '" +
+           file("small.mid") + "'; give the take another name"));
+}
+
+TEST(DeviceTable, SaysWhatItsStarMarksAndWhatTheProgramDoesWithoutADevice) {
+  using knotwave::synth::device_table;
+  knotwave::io::AudioDeviceList sound;
+  EXPECT_THAT(device_table(sound, {}, "it plays on"), HasSubstr("\n  none; it plays on\n"));
+  sound.devices = {{.number = 0, .api = "jack", .name = "system", .is_default = true}};
+  const std::string table = device_table(sound, {}, "it plays on");
+  EXPECT_THAT(table, HasSubstr("* 0  jack"));
+  EXPECT_THAT(table, HasSubstr("  * is played to where its API is chosen and no device; "));
+  EXPECT_THAT(table, Not(HasSubstr("it plays on")));
 }
 
 TEST(SynthCommandLine, AnApiOrAMidiInputThatNobodyHasIsAnError) {

@@ -96,9 +96,8 @@ TEST(ChooseDevice, WithoutAnyDeviceTheMessageIsOneLineWithTheFixAndTheReasons) {
   const Error error = choice_refused(none, "", "usb");
   EXPECT_EQ(error.code, ErrorCode::unsupported);
   EXPECT_EQ(error.message,
-            "no sound device: start a JACK or PipeWire server, plug one in, or record without one: "
-            "--audio-api none --record FILE (jack: no server is running; alsa: no device with "
-            "outputs)");
+            "no sound device: start a JACK or PipeWire server, or plug one in (jack: no server is "
+            "running; alsa: no device with outputs)");
   EXPECT_THAT(choice_refused(some_devices(), "oss", "").message,
               HasSubstr("no sound device of oss"));
 }

@@ -314,6 +314,7 @@ TEST_F(SynthProgram, WithoutADeviceSaysWhatToDoAndRecordsAllTheSame) {
   SynthProcess synth({"small.toml", "--record", "a.wav", "--duration", "0.3"}, here());
   EXPECT_EQ(synth.exit_code(), 0) << synth.err();
   EXPECT_THAT(synth.err(), HasSubstr("playing without a device"));
+  EXPECT_THAT(synth.err(), testing::Not(HasSubstr("--record"))) << "it is given";
   EXPECT_GT(io::read_sound(file("a.wav"))->frames, 4800);
 }
 

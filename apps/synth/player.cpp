@@ -226,12 +226,22 @@ void Player::share_inputs() {
 void Player::follow_senders(const std::vector<std::string>& sources,
                             std::vector<std::string>& told) {
   const std::vector<std::string> before = std::exchange(senders_, sources);
+  for (const std::string& name : sources) std::erase(unplugged_, name);
   if (is_lost_) return;
   for (const std::string& name : before) {
     if (std::find(sources.begin(), sources.end(), name) != sources.end()) continue;
     entry_.stream_sender_left();
+    unplugged_.push_back(name);
     told.push_back("MIDI: '" + name + "' was unplugged; the notes of its port ended");
   }
+}
+
+/// What the stream's own port hears is told by follow_senders() when it goes, sooner or later.
+bool Player::is_told_by_stream(const io::MidiPortStatus& port) const {
+  const auto has = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), port.name) != names.end();
+  };
+  return port.api == "jack" && !port.is_own && !is_lost_ && (has(senders_) || has(unplugged_));
 }
 
 void Player::tell_midi(std::vector<std::string>& told) {
@@ -245,7 +255,7 @@ void Player::tell_midi(std::vector<std::string>& told) {
     const auto old = std::find_if(ports_.begin(), ports_.end(),
                                   [&](const auto& other) { return other.port == port.port; });
     const bool was_open = old != ports_.end() && old->is_open;
-    if (was_open == port.is_open) continue;
+    if (was_open == port.is_open || (was_open && is_told_by_stream(port))) continue;
     told.push_back("MIDI input '" + port.name + "' (" + port.api + ") " +
                    (port.is_open ? "is open" : "has gone; its notes ended"));
   }

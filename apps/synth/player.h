@@ -96,6 +96,7 @@ class Player final : private io::AudioClient, private io::MidiListener {
   void take_device(std::unique_ptr<io::AudioStream> stream, std::vector<std::string>& told);
   void start_found(std::vector<std::string>& told);
   void tell_midi(std::vector<std::string>& told);
+  bool is_told_by_stream(const io::MidiPortStatus& port) const;
   void share_inputs();
   void follow_senders(const std::vector<std::string>& sources, std::vector<std::string>& told);
 
@@ -123,6 +124,7 @@ class Player final : private io::AudioClient, private io::MidiListener {
   std::int64_t next_try_ns_ = 0;
   std::vector<io::MidiPortStatus> ports_;  ///< as they were told
   std::vector<std::string> senders_;       ///< connected to the stream's own port
+  std::vector<std::string> unplugged_;     ///< told to be, and not connected again
   std::size_t notes_told_ = 0;
   std::vector<std::string> first_lines_;
   std::vector<float> mono_;  ///< of a single channel the other side

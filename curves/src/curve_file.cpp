@@ -22,6 +22,15 @@ Error fault(const base::Node& at, std::string_view source, ErrorCode code, std::
 }
 
 Error missing_first_lines(const base::Node& root, std::string_view source, std::string_view key) {
+  for (const base::Node::Member& member : root.members) {
+    const std::string hint = base::suggestion(member.key, {&key, 1});
+    if (hint.empty()) continue;
+    Error error =
+        fault(root, source, ErrorCode::unknown_key, "unknown key '" + member.key + "'" + hint);
+    error.line = member.line;
+    error.column = member.column;
+    return error;
+  }
   return fault(root, source, ErrorCode::missing_key,
                "'" + std::string(key) +
                    "' is missing; a file begins with format = 1 and kind = \"curve\", \"patch\", "

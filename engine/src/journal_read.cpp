@@ -181,6 +181,12 @@ void Reader::key(std::string_view expected) {
 }
 
 void Reader::read_settings(Journal& journal) {
+  const std::string_view start = text_.substr(0, kMagic.size());
+  if (start != kMagic.substr(0, start.size())) {
+    number_ = 1;
+    return fault(ErrorCode::missing_key,
+                 "this is no journal: one begins with '" + std::string(kMagic) + "'");
+  }
   key(kMagic);
   if (!ok()) return;
   if (const std::string_view version = word(); version != "1") {

@@ -111,6 +111,13 @@ class RandomSpecs {
   std::mt19937_64 engine_;
 };
 
+TEST(CurveFile, AMisspeltFirstKeyIsNamedWithTheRightOne) {
+  EXPECT_EQ(error_of("# hill\nfrmat = 1\nkind = \"curve\"\n"),
+            "x.toml:2:1: error: unknown key 'frmat'; did you mean 'format'?");
+  EXPECT_EQ(error_of("format = 1\nkin = \"curve\"\n"),
+            "x.toml:2:1: error: unknown key 'kin'; did you mean 'kind'?");
+}
+
 TEST(CurveFile, EachBrokenFileIsReportedAtItsFault) {
   const auto files = support::broken_files("curve_");
   EXPECT_GE(files.size(), 50u);

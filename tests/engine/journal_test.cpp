@@ -175,7 +175,10 @@ TEST(Journal, TellsWhatIsWrongAndWhere) {
   const std::pair<std::string, std::string> cases[] = {
       {"", "t:1:1: error: the journal ends before its line 'end'"},
       {"knotwave-journal 1", "t:1:1: error: the last line has no end: the journal was cut off"},
-      {"knotwave 1\n", "t:1:1: error: 'knotwave-journal' must be here"},
+      {"knotwave-", "t:1:1: error: the last line has no end: the journal was cut off"},
+      {"MThd without a line",
+       "t:1:1: error: this is no journal: one begins with 'knotwave-journal'"},
+      {"knotwave 1\n", "t:1:1: error: this is no journal: one begins with 'knotwave-journal'"},
       {"knotwave-journal 2\n", "t:1:18: error: this program reads journals of version 1, not '2'"},
       {"knotwave-journal 1\nrate_hz fast\n", "t:2:9: error: the rate must be a number here"},
       {"knotwave-journal 1\nrate_hz 48000\nmax_voices 0\n",

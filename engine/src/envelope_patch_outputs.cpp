@@ -27,9 +27,16 @@ std::optional<Destination> find_destination(std::string_view word) {
   return std::nullopt;
 }
 
-constexpr std::string_view kDestinationWords[] = {"bend", "pressure", "poly_pressure", "osc",
-                                                  "cv",   "cc74",     "nrpn100"};
+constexpr std::string_view kDestinationWords[] = {
+    "bend", "pressure", "poly_pressure", "osc", "cv", "cc1", "cc7", "cc11", "cc74", "nrpn100"};
+constexpr const char* kDestinations =
+    "; there are cc0 to cc119, nrpn0 to nrpn16383, bend, pressure, poly_pressure, osc and cv";
 constexpr base::Synonym kDestinationSynonyms[] = {
+    {"modwheel", "cc1"},
+    {"modulation", "cc1"},
+    {"volume", "cc7"},
+    {"expression", "cc11"},
+    {"cutoff", "cc74"},
     {"pitchbend", "bend"},
     {"pitch", "bend"},
     {"aftertouch", "pressure"},
@@ -102,11 +109,11 @@ void EnvelopePatchReader::read_destination(TableReader& reader, OutputSpec& outp
   const auto found = find_destination(word);
   if (!found) {
     const bool is_range = number_after("cc", word) >= 0 || number_after("nrpn", word) >= 0;
-    return reader.fail_at(
-        *at, is_range ? ErrorCode::value_out_of_range : ErrorCode::unknown_name,
-        "there is no output '" + word + "'" +
-            (is_range ? "; there are cc0 to cc119 and nrpn0 to nrpn16383"
-                      : base::suggestion(word, kDestinationWords, kDestinationSynonyms)));
+    std::string hint = "; there are cc0 to cc119 and nrpn0 to nrpn16383";
+    if (!is_range) hint = base::suggestion(word, kDestinationWords, kDestinationSynonyms);
+    if (hint.empty()) hint = kDestinations;
+    return reader.fail_at(*at, is_range ? ErrorCode::value_out_of_range : ErrorCode::unknown_name,
+                          "there is no output '" + word + "'" + hint);
   }
   output.kind = found->kind;
   output.number = found->number;

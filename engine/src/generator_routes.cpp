@@ -58,9 +58,12 @@ bool take_turns(const EnvelopePatchSpec& a, const EnvelopePatchSpec& b) {
   return a.trigger.program >= 0 && b.trigger.program >= 0 && a.trigger.program != b.trigger.program;
 }
 
-std::string output_words(const GeneratorRoute& route, const EnvelopePatchSpec& patch) {
-  const std::string& name = patch.patch.name;
-  return "output " + std::to_string(route.output + 1) + " of '" + name + "'";
+/// Patches of one name are told apart by their files.
+std::string output_words(const GeneratorRoute& route, const PatchSpec& patch,
+                         const PatchSpec& other) {
+  const bool is_alike = patch.name == other.name && !patch.source_name.empty();
+  return "output " + std::to_string(route.output + 1) + " of '" + patch.name + "'" +
+         (is_alike ? " (" + patch.source_name + ")" : "");
 }
 
 void add_lanes(GeneratorRoutes& table, GeneratorRoute& route, int index, int voices) {
@@ -121,8 +124,9 @@ Result<GeneratorRoutes> GeneratorRoutes::create(
           }
           continue;
         }
-        return fail(ErrorCode::control_conflict, output_words(route, spec) + " and " +
-                                                     output_words(other, others) +
+        return fail(ErrorCode::control_conflict, output_words(route, spec.patch, others.patch) +
+                                                     " and " +
+                                                     output_words(other, others.patch, spec.patch) +
                                                      " go to the same destination");
       }
       if (route.first_lane >= 0) {

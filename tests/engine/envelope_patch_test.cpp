@@ -265,6 +265,11 @@ TEST(EnvelopePatch, EveryFaultIsToldWithItsPlace) {
        "nrpn0 to nrpn16383"},
       {least("to = 'pitchbend'\n"),
        "test.toml:10:6: error: output 1: there is no output 'pitchbend'; did you mean 'bend'?"},
+      {least("to = 'modwheel'\n"),
+       "test.toml:10:6: error: output 1: there is no output 'modwheel'; did you mean 'cc1'?"},
+      {least("to = 'xyzzy'\n"),
+       "test.toml:10:6: error: output 1: there is no output 'xyzzy'; there are cc0 to cc119, "
+       "nrpn0 to nrpn16383, bend, pressure, poly_pressure, osc and cv"},
       {least("to = 'cc40'\nbits = 14\n"),
        "test.toml:11:8: error: output 1: cc40 has no low half: 14 bits are for cc0 to cc31"},
       {least("bits = 8\n"), "test.toml:11:8: error: output 1: bits must be 7 or 14"},

@@ -74,18 +74,43 @@ std::vector<Point> pixels(const PlotTrace& trace, const Frame& frame) {
   return thin;
 }
 
-void draw_panel(Scene& scene, const PlotPanel& panel, Frame frame, const std::string& x_name) {
-  std::string names;
-  for (const PlotTrace& trace : panel.traces) names += (names.empty() ? "" : ", ") + trace.name;
-  draw_title(scene, frame.left, frame.right, frame.top - 36, panel.title, names);
-  frame.draw(scene, x_name, panel.y_name);
-  std::size_t color = 0;
+/// A trace's place among the colours: steps are drawn over the lines, and counted after them.
+std::vector<Color> colors_of(const std::vector<PlotTrace>& traces) {
+  std::vector<Color> colors(traces.size());
+  std::size_t next = 0;
   for (const bool is_steps : {false, true}) {
-    for (const PlotTrace& trace : panel.traces) {
-      if (trace.is_steps != is_steps) continue;
-      auto points = pixels(trace, frame);
-      const Color shown = kCurves[color++ % std::size(kCurves)];
-      if (points.size() > 1) scene.line(std::move(points), shown, is_steps ? 1.2 : 2.4);
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+      if (traces[i].is_steps == is_steps) colors[i] = kCurves[next++ % std::size(kCurves)];
+    }
+  }
+  return colors;
+}
+
+/// Names in the colours of their lines, up to the right edge. Gives what is left of them.
+double draw_names(Scene& scene, const std::vector<PlotTrace>& traces,
+                  const std::vector<Color>& colors, double left, double right, double y) {
+  constexpr double kSize = 14, kGap = 24, kMostShare = 0.6;
+  const double least = right - kMostShare * (right - left);
+  for (std::size_t i = traces.size(); i-- > 0;) {
+    const std::string name = fitted(traces[i].name, kSize, right - least);
+    if (name.empty()) break;
+    scene.text({right, y}, name, colors[i], kSize, Shape::Anchor::end);
+    right -= text_width(name, kSize) + kGap;
+  }
+  return right;
+}
+
+void draw_panel(Scene& scene, const PlotPanel& panel, Frame frame, const std::string& x_name) {
+  const std::vector<Color> colors = colors_of(panel.traces);
+  const double y = frame.top - 36;
+  const double right = draw_names(scene, panel.traces, colors, frame.left, frame.right, y);
+  draw_title(scene, frame.left, right, y, panel.title, "");
+  frame.draw(scene, x_name, panel.y_name);
+  for (const bool is_steps : {false, true}) {
+    for (std::size_t i = 0; i < panel.traces.size(); ++i) {
+      if (panel.traces[i].is_steps != is_steps) continue;
+      auto points = pixels(panel.traces[i], frame);
+      if (points.size() > 1) scene.line(std::move(points), colors[i], is_steps ? 1.2 : 2.4);
     }
   }
 }

@@ -123,7 +123,9 @@ class RtMidiInputs : public MidiInputs {
         return fail(ErrorCode::unsupported,
                     "the MIDI API '" + api.name() + "' does not work here: " + api.fault());
       }
-      for (const std::string& name : api.sources()) names.push_back(name);
+      for (const std::string& name : api.sources()) {
+        if (!OwnOutput::has(api.name(), name)) names.push_back(name);
+      }
     }
     for (const std::string& part : config_.ports) {
       if (std::none_of(names.begin(), names.end(),

@@ -253,5 +253,14 @@ TEST_F(EnvOnJack, NamesThePortsThereAreWhereOneIsWrong) {
                                  "'board:in'"));
 }
 
+TEST_F(EnvOnJack, DoesNotNameItsOwnOutputAsAnInput) {
+  const support::ProgramRun run = support::run_program(
+      {"knotwave-env", std::string(KNOTWAVE_SOURCE_DIR) + "/examples/envelopes/filter-swell.toml",
+       "--midi-api", "jack", "--midi-in", "piano"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("no MIDI input has 'piano' in its name; there is: "));
+  EXPECT_THAT(run.err, Not(HasSubstr("synth")));
+}
+
 }  // namespace
 }  // namespace knotwave::io

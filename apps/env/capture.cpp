@@ -71,21 +71,44 @@ Result<curves::FittedCurve> fit(const Recording& recording, double tolerance) {
   return lines;
 }
 
+/// The next number of three digits that is no smaller.
+double three_digits_up(double value) {
+  double times = 1, by = 1;
+  while (value * times < 100) times *= 10;
+  while (value / by >= 1000) by *= 10;
+  return std::ceil(value * times / by) / times * by;
+}
+
+/// A tolerance with which `--points` are enough, where the one before, 0.3 % and less below, is
+/// not: doubled until one is found, then halfway by ratio. 0: none.
+double tolerance_for(const CaptureOptions& options, const Recording& recording) {
+  constexpr int kMostDoublings = 20, kHalvings = 8;
+  const auto is_enough = [&](double tolerance) {
+    const auto wider = fit(recording, tolerance);
+    return wider && wider->curve.point_count() <= options.points;
+  };
+  double low = tolerance_of(options, recording), high = 2 * low;
+  for (int i = 0; !is_enough(high); ++i) {
+    if (i == kMostDoublings) return 0;
+    low = high;
+    high *= 2;
+  }
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = std::sqrt(low * high);
+    (is_enough(middle) ? high : low) = middle;
+  }
+  // More tolerance can take more points, so the rounded one is tried as well.
+  const double rounded = three_digits_up(high);
+  return is_enough(rounded) ? rounded : high;
+}
+
 /// What is said where more points are needed than may be.
 Error too_many(const CaptureOptions& options, const Recording& recording, int needed) {
-  constexpr int kMostTries = 40;
-  const std::string& unit = recording.unit_name;
-  double tolerance = tolerance_of(options, recording);
-  std::string message = "within " + amount(tolerance, unit) + " it takes " +
-                        std::to_string(needed) + " points, --points allows " +
+  std::string message = "within " + amount(tolerance_of(options, recording), recording.unit_name) +
+                        " it takes " + std::to_string(needed) + " points, --points allows " +
                         std::to_string(options.points);
-  for (int i = 0; i < kMostTries; ++i) {
-    tolerance *= 1.5;
-    const auto wider = fit(recording, tolerance);
-    if (!wider || wider->curve.point_count() > options.points) continue;
-    message += "; --tolerance " + number_text(std::ceil(tolerance * 1e3) / 1e3) + " would do";
-    break;
-  }
+  const double tolerance = tolerance_for(options, recording);
+  if (tolerance > 0) message += "; --tolerance " + number_text(tolerance) + " would do";
   return fail(ErrorCode::too_many_points, message);
 }
 

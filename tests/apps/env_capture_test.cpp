@@ -287,9 +287,13 @@ TEST(EnvCapture, RefusesMorePointsThanMayBeAndSaysWhatWouldDo) {
   EXPECT_THAT(run.err, HasSubstr("--points allows 8; --tolerance "));
   EXPECT_FALSE(std::filesystem::exists(out));
   const std::string word = run.err.substr(run.err.find("--tolerance ") + 12);
-  const ProgramRun again = capture({"cc1", "--from", folder.file("in.mid"), "--points", "8",
-                                    "--tolerance", word.substr(0, word.find(' ')), "-o", out});
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  const double proposed = std::stod(word);
+  const auto with = [&](double tolerance) {
+    return capture({"cc1", "--from", folder.file("in.mid"), "--points", "8", "--tolerance",
+                    std::to_string(tolerance), "-o", out});
+  };
+  EXPECT_EQ(with(proposed).exit_code, 0) << with(proposed).err;
+  EXPECT_EQ(with(0.98 * proposed).exit_code, 1) << proposed << " is larger than need be";
 }
 
 /// A sound of one channel as 32-bit floats.

@@ -16,6 +16,31 @@ Result<std::vector<engine::VoltageChannel>> read_calibration(const EnvOptions& o
   return engine::parse_calibration(*text, options.calibration);
 }
 
+std::string highest_channel_text(const EnvInput& input) {
+  std::string text;
+  int highest = 0;
+  const auto hear = [&](int channel, const char* what, std::size_t index, const std::string& name) {
+    if (channel <= highest) return;
+    highest = channel;
+    text = what + std::to_string(index + 1) + " of '" + name + "' goes to channel " +
+           std::to_string(channel);
+  };
+  for (const auto& program : input.programs) {
+    const engine::EnvelopePatchSpec& spec = program->spec();
+    for (std::size_t i = 0; i < spec.outputs.size(); ++i) {
+      const engine::OutputSpec& output = spec.outputs[i];
+      if (output.kind != engine::OutputKind::voltage) continue;
+      hear(output.number, "output ", i, spec.patch.name);
+    }
+    for (std::size_t i = 0; i < spec.place_events.size(); ++i) {
+      const engine::PlaceEventSpec& event = spec.place_events[i];
+      if (event.kind != engine::PlaceEventSpec::Kind::voltage) continue;
+      hear(event.voltage_channel, "event ", i, spec.patch.name);
+    }
+  }
+  return text;
+}
+
 Result<std::unique_ptr<CvStream>> CvStream::open(const EnvOptions& options, const EnvInput& input) {
   engine::VoltageConfig voltage;
   voltage.direct_current = options.direct_current;
@@ -34,7 +59,13 @@ Result<std::unique_ptr<CvStream>> CvStream::open(const EnvOptions& options, cons
   audio.channels.resize(probe->channels());
   std::iota(audio.channels.begin(), audio.channels.end(), 1);
   auto stream = io::AudioStream::open(audio, *cv);
-  if (!stream) return stream.error();
+  if (!stream) {
+    Error error = stream.error();
+    if (error.code == ErrorCode::value_out_of_range) {
+      error.message += "; " + highest_channel_text(input);
+    }
+    return error;
+  }
   cv->rate_hz_ = voltage.rate_hz = (*stream)->format().rate_hz;
   auto player = CvPlayer::create(voltage, options.seed, input.voltage_patches());
   if (!player) return player.error();

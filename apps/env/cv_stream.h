@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "knotwave/base/spsc_ring.h"
@@ -19,6 +20,9 @@ namespace knotwave::env {
 
 /// The calibration that the options name; empty without. Errors: those of reading and parsing.
 Result<std::vector<engine::VoltageChannel>> read_calibration(const EnvOptions& options);
+
+/// "event 1 of 'Four voltages' goes to channel 5": what asks for the highest audio channel.
+std::string highest_channel_text(const EnvInput& input);
 
 class CvStream final : public PlannerListener, private io::AudioClient {
  public:

@@ -50,6 +50,7 @@ Result<DryRun> dry_run(const EnvOptions& options, const EnvInput& input, const i
   }
   DryRun run;
   run.names = names_of(generator, input);
+  run.port_specs = generator.ports();
   const auto go_to = [&](base::SampleTime time) {
     if (time.sample > generator.now()) generator.advance(time.sample, run.sent);
   };
@@ -64,6 +65,13 @@ Result<DryRun> dry_run(const EnvOptions& options, const EnvInput& input, const i
         generator.handle(event);
         ++run.messages_in;
       });
+  for (const auto& program : input.programs) {
+    run.output_ports.emplace_back(program->spec().outputs.size(), -1);
+  }
+  for (const engine::RouteStatus& route : generator.routes()) {
+    auto& ports = run.output_ports[static_cast<std::size_t>(route.patch)];
+    ports[static_cast<std::size_t>(route.output)] = route.port;
+  }
   go_to({song_end + std::lround(options.tail_s * kClockHz), 0});
   generator.go_to_rest();
   const std::int64_t latest = generator.now() + kMostToRest;

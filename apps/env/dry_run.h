@@ -25,6 +25,8 @@ struct DryRun {
   std::int64_t lost = 0;  ///< of them, for which the generator had no room
   std::int64_t end = 0;   ///< samples of the virtual clock
   std::vector<PortUse> ports;
+  std::vector<engine::PortSpec> port_specs;    ///< of `ports`
+  std::vector<std::vector<int>> output_ports;  ///< [patch][output]; -1: OSC or voltage
   bool came_to_rest = true;
 };
 

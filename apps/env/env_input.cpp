@@ -2,6 +2,8 @@
 #include "env_input.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "bank_input/patch_warnings.h"
@@ -13,15 +15,47 @@ using engine::OutputKind;
 
 bool is_midi(OutputKind kind) { return kind != OutputKind::osc && kind != OutputKind::voltage; }
 
-bool is_in_steps(const engine::OutputSpec& output) {
-  return output.kind == OutputKind::channel_pressure || output.kind == OutputKind::poly_pressure ||
-         ((output.kind == OutputKind::control || output.kind == OutputKind::nrpn) &&
-          output.bits == 7);
+/// The full scale of what a destination of MIDI takes; nothing for OSC and voltages.
+std::optional<std::pair<double, double>> scale_of(const engine::OutputSpec& output) {
+  if (output.kind == OutputKind::pitch_bend) return std::pair(-8192.0, 8191.0);
+  if (!is_midi(output.kind)) return std::nullopt;
+  return std::pair(0.0, output.bits == 14 ? 16383.0 : 127.0);
+}
+
+/// `range` and `rest` as steps of a controller: the same share of the full scale; of OSC and
+/// voltages, which have none, `range` becomes all there is.
+void scale_to_control(engine::OutputSpec& output) {
+  const auto [least, most] = scale_of(output).value_or(std::minmax({output.low, output.high}));
+  const auto step = [least = least, most = most](double value) {
+    if (most <= least) return 0.0;
+    return std::clamp(std::floor((value - least) / (most - least) * 127 + 0.5), 0.0, 127.0);
+  };
+  output.low = step(output.low);
+  output.high = step(output.high);
+  output.rest = step(output.rest);
 }
 
 bool sends(const engine::EnvelopePatchSpec& patch, OutputKind kind) {
   return std::any_of(patch.outputs.begin(), patch.outputs.end(),
                      [kind](const auto& output) { return output.kind == kind; });
+}
+
+/// Options for voltages, where no patch has any.
+Result<void> check_voltage_options(const EnvOptions& options, const EnvInput& input) {
+  if (!input.voltage_patches().empty()) return {};
+  const std::pair<bool, const char*> given[] = {
+      {options.direct_current, "--cv"},
+      {!options.calibration.empty(), "--calibration"},
+      {!options.audio_api.empty(), "--audio-api"},
+      {!options.audio_device.empty(), "--audio-device"},
+  };
+  for (const auto& [is_given, name] : given) {
+    if (!is_given) continue;
+    return fail(ErrorCode::usage, std::string(name) +
+                                      " is for control voltage, and no patch has an output to = "
+                                      "\"cv\" or an event with a gate");
+  }
+  return {};
 }
 
 }  // namespace
@@ -52,11 +86,7 @@ std::vector<const engine::EnvelopePatchProgram*> EnvInput::voltage_patches() con
 void redirect(const EnvOptions& options, engine::EnvelopePatchSpec& patch) {
   if (options.control >= 0 && !patch.outputs.empty()) {
     engine::OutputSpec& first = patch.outputs.front();
-    if (!is_in_steps(first)) {
-      first.low = 0;
-      first.high = 127;
-      first.rest = 0;
-    }
+    scale_to_control(first);
     first.kind = OutputKind::control;
     first.number = options.control;
     first.bits = 7;
@@ -84,6 +114,7 @@ Result<EnvInput> read_input(const EnvOptions& options) {
     }
     input.programs.push_back(std::move(*program));
   }
+  if (const auto fine = check_voltage_options(options, input); !fine) return fine.error();
   return input;
 }
 

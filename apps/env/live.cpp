@@ -28,6 +28,18 @@ std::string shown_port(const io::MidiSenderPort& port) {
   return port.name + (port.is_open ? "" : " (gone)");
 }
 
+/// What is said where `--midi-out NAME=PORT` names a port that no patch has.
+Error no_port(const std::string& name, const std::vector<std::string_view>& names) {
+  std::string hint = base::suggestion(name, names);
+  if (hint.empty()) {
+    for (const std::string_view known : names) {
+      if (!known.empty()) hint += (hint.empty() ? "; there is: " : ", ") + std::string(known);
+    }
+  }
+  if (hint.empty()) hint = "; theirs has no name: --midi-out PORT";
+  return fail(ErrorCode::usage, "--midi-out: no patch has a port '" + name + "'" + hint);
+}
+
 }  // namespace
 
 Result<std::vector<io::MidiOutputConfig>> output_ports(const EnvOptions& options,
@@ -50,9 +62,8 @@ Result<std::vector<io::MidiOutputConfig>> output_ports(const EnvOptions& options
       all[static_cast<std::size_t>(found - names.begin())].port = word.substr(equals + 1);
     } else if (all.empty()) {
       return fail(ErrorCode::usage, "--midi-out '" + word + "': no patch sends MIDI");
-    } else if (equals != std::string::npos && !base::suggestion(name, names).empty()) {
-      return fail(ErrorCode::usage,
-                  "--midi-out: no patch has a port '" + name + "'" + base::suggestion(name, names));
+    } else if (equals != std::string::npos) {
+      return no_port(name, names);
     } else {
       all.front().port = word;
     }

@@ -14,6 +14,7 @@
 
 #include "cv_stream.h"
 #include "dry_run.h"
+#include "live.h"
 #include "sent_plot.h"
 #include "status.h"
 
@@ -40,7 +41,7 @@ class VoltageFile {
  public:
   static Result<VoltageFile> create(const EnvOptions& options, const EnvInput& input) {
     engine::VoltageConfig voltage;
-    voltage.direct_current = options.direct_current;
+    voltage.direct_current = true;  // no loudspeaker is there to be kept safe
     voltage.rate_hz = kClockHz;
     voltage.ramp_s = kRampSeconds;
     auto channels = read_calibration(options);
@@ -156,6 +157,8 @@ Result<std::string> run_offline(const EnvOptions& options, const EnvInput& input
   if (!options.quiet) say_warnings(options.dry_run, *song);
   auto run = dry_run(options, input, *song);
   if (!run) return run.error();
+  // No device is opened, but a name that would be refused live is refused here.
+  if (const auto known = output_ports(options, run->port_specs); !known) return known.error();
   std::string lines;
   if (base::has_ending(options.output, ".mid")) {
     if (const auto written = write_song(options, *run); !written) return written.error();

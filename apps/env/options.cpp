@@ -218,6 +218,10 @@ std::string dry_run_conflict(const EnvOptions& o) {
     if (!o.plot.empty()) return "--plot is for --dry-run: name a MIDI file to play";
     return {};
   }
+  if (o.duration_s > 0) {
+    return "--duration ends what is played with devices; --dry-run plays the song, and --tail "
+           "seconds more";
+  }
   if (!o.output.empty() && !base::has_ending(o.output, ".mid") &&
       !base::has_ending(o.output, ".csv") && !base::has_ending(o.output, ".wav")) {
     return "--output: '" + o.output + "' ends neither in .mid nor in .csv nor in .wav";

@@ -22,16 +22,6 @@ double seconds_of(base::SampleTime time) {
          kClockHz;
 }
 
-/// The port that an output of MIDI goes to.
-int port_of(const EnvInput& input, const SentNames& names, std::size_t patch,
-            const engine::OutputSpec& spec) {
-  std::string name = spec.port;
-  const auto& ports = input.programs[patch]->spec().ports;
-  if (name.empty() && !ports.empty()) name = ports.front().name;
-  const auto found = std::find(names.ports.begin(), names.ports.end(), name);
-  return found == names.ports.end() ? 0 : static_cast<int>(found - names.ports.begin());
-}
-
 /// Numbers of every output over time, some 4000 a run.
 Result<std::vector<std::vector<Points>>> curves_of(const EnvOptions& options, const EnvInput& input,
                                                    const io::Song& song, std::int64_t end) {
@@ -108,12 +98,12 @@ Result<std::string> plot_of(const EnvOptions& options, const EnvInput& input, co
     for (std::size_t o = 0; o < spec.outputs.size(); ++o) {
       const engine::OutputSpec& output = spec.outputs[o];
       curves::PlotPanel& panel = panels.emplace_back();
-      panel.title = source_text(spec, output) + " to " + destination_text(output);
+      panel.title = source_name(spec, output) + " to " + destination_text(output);
       panel.y_name = output.kind == OutputKind::voltage ? "volts" : "value";
       panel.traces.push_back({"curve", std::move((*curves)[p][o]), false});
       if (output.kind == OutputKind::voltage) continue;
       panel.traces.push_back({"sent",
-                              received(run.sent.messages(), port_of(input, run.names, p, output),
+                              received(run.sent.messages(), run.output_ports[p][o],
                                        static_cast<int>(p), static_cast<int>(o), output),
                               true});
     }

@@ -69,6 +69,16 @@ std::string source_text(const engine::EnvelopePatchSpec& spec, const engine::Out
   return "?";
 }
 
+std::string source_name(const engine::EnvelopePatchSpec& spec, const engine::OutputSpec& output) {
+  const auto index = static_cast<std::size_t>(output.source_index);
+  const engine::PatchSpec& patch = spec.patch;
+  if (output.source == MapSource::envelope && index < patch.envelopes.size()) {
+    return patch.envelopes[index].name;
+  }
+  if (output.source == MapSource::lfo && index < patch.lfos.size()) return patch.lfos[index].name;
+  return source_text(spec, output);
+}
+
 std::string destination_text(const engine::OutputSpec& output) {
   const std::string channel =
       output.channel == 0 ? " ch of the note" : " ch" + std::to_string(output.channel);

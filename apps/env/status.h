@@ -18,6 +18,8 @@ std::string fixed(double value, int decimals);
 std::string trigger_text(const engine::TriggerSpec& trigger);
 /// What plays: "swell.curve (loop 2..5)", "tremolo", "free.depth".
 std::string source_text(const engine::EnvelopePatchSpec& patch, const engine::OutputSpec& output);
+/// The same as the patch calls it, without its curve and places: "swell".
+std::string source_name(const engine::EnvelopePatchSpec& patch, const engine::OutputSpec& output);
 /// Where it goes: "CC74 ch3", "bend ch of the note", "/filter/cutoff", "CV 2".
 std::string destination_text(const engine::OutputSpec& output);
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What knotwave-env writes and says, and how it counts time.
+#include <array>
+#include <fstream>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -11,6 +13,7 @@
 #include "env/sent_files.h"
 #include "env/sent_plot.h"
 #include "env/status.h"
+#include "support/program.h"
 #include "support/seed.h"
 
 namespace knotwave::env {
@@ -225,6 +228,24 @@ range = [0, 1]
   return *patch;
 }
 
+TEST(EnvReceivers, AreThoseOfTheirOwnPort) {
+  const support::ScratchFolder folder;
+  const std::string body =
+      "[curves.c]\ndegree = 1\npoints = [0, 1]\n[envelopes.e]\ncurve = \"c\"\n";
+  const std::string head = "format = 1\nkind = \"envelope\"\n" + body;
+  const std::string to = "[[outputs]]\nfrom = \"e\"\nto = ";
+  std::ofstream(folder.file("named.toml")) << head + "[ports.synth]\n" + to + "\"cc74\"\n";
+  std::ofstream(folder.file("bare.toml")) << head + to + "\"cc74\"\n" + to + "\"cv\"\n";
+  EnvOptions options;
+  options.patches = {folder.file("named.toml"), folder.file("bare.toml")};
+  const auto input = read_input(options);
+  ASSERT_TRUE(input.has_value()) << input.error().to_string();
+  const auto run = dry_run(options, *input, io::Song());
+  ASSERT_TRUE(run.has_value()) << run.error().to_string();
+  EXPECT_THAT(run->names.ports, ElementsAre("synth", "out"));
+  EXPECT_THAT(run->output_ports, ElementsAre(ElementsAre(0), ElementsAre(1, -1)));
+}
+
 TEST(EnvStatus, SaysARouteInOneLine) {
   const auto patch = swell();
   engine::RouteStatus route;
@@ -251,8 +272,53 @@ TEST(EnvOptions, RedirectTheFirstOutput) {
   EXPECT_EQ(destination_text(patch.outputs[0]), "CC11 ch7");
   EXPECT_EQ(patch.outputs[0].low, 0);
   EXPECT_EQ(patch.outputs[0].high, 127);
+  EXPECT_EQ(patch.outputs[0].rest, 64);
   EXPECT_EQ(destination_text(patch.outputs[1]), "CC74 ch7");
   EXPECT_EQ(destination_text(patch.outputs[2]), "/x");
+}
+
+TEST(EnvOptions, AControllerHasTheSameShareOfItsScaleAsTheOutputOfThePatch) {
+  struct Case {
+    engine::OutputKind kind;
+    int bits;
+    double low, high, rest;
+    std::array<double, 3> right;
+  };
+  using Kind = engine::OutputKind;
+  const Case cases[] = {
+      {Kind::control, 7, 100, 10, 64, {100, 10, 64}},
+      {Kind::control, 14, 0, 8191, 16383, {0, 63, 127}},
+      {Kind::pitch_bend, 14, -2048, 2048, 0, {48, 79, 64}},
+      {Kind::pitch_bend, 14, 8191, -8192, 0, {127, 0, 64}},
+      {Kind::channel_pressure, 7, 20, 40, 20, {20, 40, 20}},
+      {Kind::osc, 7, 200, 4000, 200, {0, 127, 0}},
+      {Kind::voltage, 7, 5, -5, 0, {127, 0, 64}},
+      {Kind::voltage, 7, 5, 5, 5, {0, 0, 0}},
+  };
+  EnvOptions options;
+  options.control = 11;
+  for (const Case& c : cases) {
+    engine::EnvelopePatchSpec patch;
+    engine::OutputSpec& output = patch.outputs.emplace_back();
+    output.kind = c.kind;
+    output.bits = c.bits;
+    output.low = c.low;
+    output.high = c.high;
+    output.rest = c.rest;
+    redirect(options, patch);
+    EXPECT_THAT((std::array{output.low, output.high, output.rest}),
+                testing::ElementsAreArray(c.right))
+        << c.low << " to " << c.high;
+    EXPECT_EQ(output.bits, 7);
+  }
+}
+
+TEST(EnvVoltages, TellWhatAsksForTheHighestChannel) {
+  EnvOptions options;
+  options.patches = {std::string(KNOTWAVE_SOURCE_DIR) + "/examples/envelopes/four-voltages.toml"};
+  auto input = read_input(options);
+  ASSERT_TRUE(input.has_value()) << input.error().to_string();
+  EXPECT_EQ(highest_channel_text(*input), "event 1 of 'Four voltages' goes to channel 5");
 }
 
 TEST(EnvOptions, NameOutputsByThePortsOfThePatches) {
@@ -271,6 +337,15 @@ TEST(EnvOptions, NameOutputsByThePortsOfThePatches) {
   options.midi_out = {"drms=TR"};
   EXPECT_EQ(output_ports(options, ports).error().message,
             "--midi-out: no patch has a port 'drms'; did you mean 'drums'?");
+  options.midi_out = {"foo=Bar"};
+  EXPECT_EQ(output_ports(options, ports).error().message,
+            "--midi-out: no patch has a port 'foo'; there is: synth, drums");
+  EXPECT_EQ(output_ports(options, std::vector<engine::PortSpec>(1)).error().message,
+            "--midi-out: no patch has a port 'foo'; theirs has no name: --midi-out PORT");
+  options.midi_out = {"=Foo=Bar"};  // a device with such a name
+  all = output_ports(options, std::vector<engine::PortSpec>(1));
+  ASSERT_TRUE(all.has_value()) << all.error().to_string();
+  EXPECT_EQ((*all)[0].port, "Foo=Bar");
   options.midi_out = {"Moog"};
   EXPECT_EQ(output_ports(options, {}).error().code, ErrorCode::usage);
 }

@@ -106,6 +106,37 @@ TEST(EnvProgram, ATableAndAPictureShowTheSame) {
   EXPECT_THAT(picture, HasSubstr("CC74"));
 }
 
+/// How often a text is in another.
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+const std::string kRise =
+    "format = 1\nkind = \"envelope\"\n[curves.c]\ndegree = 1\npoints = [0, 1]\n"
+    "[envelopes.e]\ncurve = \"c\"\n";
+
+TEST(EnvProgram, APictureShowsTheMessagesOfEachPortOverItsOwnCurve) {
+  const ScratchFolder folder;
+  const std::string output = "[[outputs]]\nfrom = \"e\"\nto = ";
+  std::ofstream(folder.file("named.toml")) << kRise << "[ports.synth]\n" << output << "\"cc74\"\n";
+  std::ofstream(folder.file("bare.toml")) << kRise << output << "\"bend\"\n";
+  const ProgramRun run =
+      env_program({folder.file("named.toml"), folder.file("bare.toml"), "--dry-run",
+                   score("first-light"), "--plot", folder.file("sent.svg")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("out "));
+  const std::string picture = content(folder.file("sent.svg"));
+  EXPECT_THAT(picture, HasSubstr(">e to CC74 ch1<"));     // as the patch calls it
+  EXPECT_EQ(count_of(picture, "fill=\"#0a5cd6\""), 2);    // "curve" in the colour of its line
+  EXPECT_EQ(count_of(picture, "fill=\"#ce2160\""), 2);    // and "sent"
+  EXPECT_EQ(count_of(picture, "stroke=\"#0a5cd6\""), 2);  // curves
+  EXPECT_EQ(count_of(picture, "stroke=\"#ce2160\""), 2);  // what is sent of them
+}
+
 /// One key held for 10 s.
 void write_long_note(const std::string& path) {
   io::Song song;
@@ -148,6 +179,39 @@ TEST(EnvProgram, VoltagesGoIntoASoundFile) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("none.wav")));
 }
 
+TEST(EnvProgram, VoltagesInASoundFileHaveTheirDirectCurrentAndTheScaleOfTheCalibration) {
+  const ScratchFolder folder;
+  write_long_note(folder.file("long.mid"));
+  std::ofstream(folder.file("five.toml"))
+      << "format = 1\nkind = \"envelope\"\n[curves.c]\ndegree = 1\npoints = [1, 1]\n"
+         "[envelopes.e]\ncurve = \"c\"\nsustain_at = 0.5\n[[outputs]]\nfrom = \"e\"\nto = \"cv\"\n"
+         "[[outputs]]\nfrom = \"e\"\nto = \"cv\"\ncv_channel = 2\nrange = [0, 4]\n";
+  const auto middle = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {folder.file("five.toml"), "--dry-run",
+                                      folder.file("long.mid"), "-o", folder.file("volts.wav")};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramRun run = env_program(words);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const auto sound = io::read_sound(folder.file("volts.wav"));
+    if (!sound || sound->samples.size() < 2 * 96002) return std::pair(0.0F, 0.0F);
+    return std::pair(sound->samples[2 * 96000], sound->samples[2 * 96000 + 1]);
+  };
+  EXPECT_EQ(middle({}), std::pair(0.5F, 0.4F));
+  EXPECT_EQ(middle({"--cv"}), std::pair(0.5F, 0.4F));
+  const auto [one, two] =
+      middle({"--calibration", kExamples + "envelopes/calibration/two-outputs.toml"});
+  EXPECT_NEAR(one, (5 - 0.003) / 10.12, 1e-7);
+  EXPECT_NEAR(two, (4 + 0.011) / -5.04, 1e-7);
+}
+
+TEST(EnvProgram, TheCalibrationOfTheManualIsTheExample) {
+  const std::string example = content(kExamples + "envelopes/calibration/two-outputs.toml");
+  const std::string page = content(std::string(KNOTWAVE_SOURCE_DIR) + "/docs/env.md");
+  const std::size_t begin = example.find("format = 1");
+  ASSERT_NE(begin, std::string::npos);
+  EXPECT_THAT(page, HasSubstr("```toml\n" + example.substr(begin) + "```"));
+}
+
 TEST(EnvProgram, EveryShippedPatchPlays) {
   for (const auto& entry : std::filesystem::directory_iterator(kExamples + "envelopes")) {
     if (entry.path().extension() != ".toml") continue;
@@ -180,6 +244,14 @@ TEST(EnvProgram, WhatMakesNoSenseIsUsage) {
       {{patch, "--dry-run", song, "-o", song}, "--output"},
       {{patch, "--cc", "120"}, "--cc: '120' is not a whole number from 0 to 119"},
       {{patch, "--chanel", "3"}, "--channel"},
+      {{patch, "--dry-run", song, "--midi-out", "foo=Bar"},
+       "no patch has a port 'foo'; there is: synth"},
+      {{patch, "--dry-run", song, "--duration", "3"},
+       "--duration ends what is played with devices"},
+      {{patch, "--dry-run", song, "--cv"}, "--cv is for control voltage, and no patch has"},
+      {{patch, "--dry-run", song, "--calibration", "x.toml"},
+       "--calibration is for control voltage"},
+      {{patch, "--audio-device", "0"}, "--audio-device is for control voltage, and no patch has"},
       {{patch, "--osc", "nowhere"}, "neither a port from 1 to 65535 nor HOST:PORT"},
   };
   for (const auto& [words, message] : cases) {
@@ -209,6 +281,35 @@ TEST(EnvProgram, AFreeNumberThatNobodyReadsIsTold) {
   std::ofstream(folder.file("bare.toml")) << "format = 1\n";
   EXPECT_THAT(run_program({"knotwave-curve", "check", folder.file("bare.toml")}).err,
               HasSubstr("or \"envelope\""));
+}
+
+TEST(EnvProgram, AnOutputThatCutsItsSourceIsTold) {
+  const ScratchFolder folder;
+  const std::string head =
+      kRise + "[lfos.vib]\ncurve = \"sine\"\n[lfos.walk]\ncurve = \"c\"\nrandom = true\n" +
+      "[[outputs]]\nto = \"bend\"\n";
+  const std::string song = score("first-light");
+  const auto said = [&](const std::string& rest) {
+    std::ofstream(folder.file("p.toml")) << head + rest;
+    const ProgramRun run = env_program({folder.file("p.toml"), "--dry-run", song});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run_program({"knotwave-curve", "check", folder.file("p.toml")}).err, run.err);
+    return run.err;
+  };
+  EXPECT_THAT(
+      said("from = \"vib\"\n"),
+      HasSubstr("p.toml:14:8: warning: output 1 clips: 'vib' runs from -1 to 1, of = [0, 1]"));
+  EXPECT_THAT(said("from = \"walk\"\n"), HasSubstr("output 1 clips: 'walk' runs from -1 to 1"));
+  EXPECT_EQ(said("from = \"e\"\n"), "");
+  EXPECT_EQ(said("from = \"vib\"\nof = [-1, 1]\n"), "");
+  EXPECT_EQ(said("from = \"vib\"\nof = [0, 1]\n"), "");  // it was asked for
+}
+
+TEST(EnvProgram, APatchGivenTwiceIsToldWithItsFile) {
+  const std::string patch = envelope("filter-swell");
+  const ProgramRun run = env_program({patch, patch, "--dry-run", score("first-light")});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr(" (" + patch + ") and output 1 of "));
 }
 
 TEST(EnvProgram, FaultsOfFilesAreToldWithTheirPlace) {

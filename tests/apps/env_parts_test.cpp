@@ -270,7 +270,7 @@ TEST(EnvOptions, RedirectTheFirstOutput) {
   std::swap(patch.outputs[0], patch.outputs[1]);  // the bend first
   redirect(options, patch);
   EXPECT_EQ(destination_text(patch.outputs[0]), "CC11 ch7");
-  EXPECT_EQ(patch.outputs[0].low, 0);
+  EXPECT_EQ(patch.outputs[0].low, 64);
   EXPECT_EQ(patch.outputs[0].high, 127);
   EXPECT_EQ(patch.outputs[0].rest, 64);
   EXPECT_EQ(destination_text(patch.outputs[1]), "CC74 ch7");

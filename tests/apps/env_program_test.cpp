@@ -298,7 +298,7 @@ TEST(EnvProgram, AnOutputThatCutsItsSourceIsTold) {
   };
   EXPECT_THAT(
       said("from = \"vib\"\n"),
-      HasSubstr("p.toml:14:8: warning: output 1 clips: 'vib' runs from -1 to 1, of = [0, 1]"));
+      HasSubstr("p.toml:15:8: warning: output 1 clips: 'vib' runs from -1 to 1, of = [0, 1]"));
   EXPECT_THAT(said("from = \"walk\"\n"), HasSubstr("output 1 clips: 'walk' runs from -1 to 1"));
   EXPECT_EQ(said("from = \"e\"\n"), "");
   EXPECT_EQ(said("from = \"vib\"\nof = [-1, 1]\n"), "");

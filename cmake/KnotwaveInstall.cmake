@@ -93,7 +93,7 @@ endif()
 
 # The folders stay beside each other: files name one another as ../patches/bell.toml.
 set(examples_dir ${CMAKE_INSTALL_DATADIR}/knotwave/examples)
-foreach(folder banks curves envelopes musicians patches scores sounds tunings)
+foreach(folder banks calibration curves envelopes musicians patches scores sounds tunings)
   if(EXISTS ${PROJECT_SOURCE_DIR}/examples/${folder})
     install(DIRECTORY examples/${folder} DESTINATION ${examples_dir} COMPONENT runtime FILES_MATCHING
       PATTERN "*.toml" PATTERN "*.mid" PATTERN "*.scl" PATTERN "*.kbm" PATTERN "*.wav" PATTERN "*.flac")

@@ -198,14 +198,13 @@ TEST(EnvProgram, VoltagesInASoundFileHaveTheirDirectCurrentAndTheScaleOfTheCalib
   };
   EXPECT_EQ(middle({}), std::pair(0.5F, 0.4F));
   EXPECT_EQ(middle({"--cv"}), std::pair(0.5F, 0.4F));
-  const auto [one, two] =
-      middle({"--calibration", kExamples + "envelopes/calibration/two-outputs.toml"});
+  const auto [one, two] = middle({"--calibration", kExamples + "calibration/two-outputs.toml"});
   EXPECT_NEAR(one, (5 - 0.003) / 10.12, 1e-7);
   EXPECT_NEAR(two, (4 + 0.011) / -5.04, 1e-7);
 }
 
 TEST(EnvProgram, TheCalibrationOfTheManualIsTheExample) {
-  const std::string example = content(kExamples + "envelopes/calibration/two-outputs.toml");
+  const std::string example = content(kExamples + "calibration/two-outputs.toml");
   const std::string page = content(std::string(KNOTWAVE_SOURCE_DIR) + "/docs/env.md");
   const std::size_t begin = example.find("format = 1");
   ASSERT_NE(begin, std::string::npos);

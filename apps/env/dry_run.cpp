@@ -81,6 +81,10 @@ Result<DryRun> dry_run(const EnvOptions& options, const EnvInput& input, const i
   run.came_to_rest = generator.is_at_rest();
   run.end = generator.now();
   run.lost = generator.lost();
+  for (int port = 0; port < static_cast<int>(generator.ports().size()); ++port) {
+    run.lost += generator.port_counters(port).lost;
+    run.overload_bytes += generator.port_counters(port).overload_bytes;
+  }
   run.sent.sort();
   run.ports = uses_of(generator, run.names, static_cast<double>(run.end) / kClockHz);
   return run;
@@ -97,6 +101,9 @@ std::string dry_run_line(const DryRun& run, const std::string& path) {
             fixed(port.bytes_per_second, 0) + " B/s";
     if (port.share > 0) line += ", " + fixed(port.share * 100, 1) + " %";
     line += ")";
+  }
+  if (run.overload_bytes > 0) {
+    line += ", " + std::to_string(run.overload_bytes) + " bytes passed through waited over 20 ms";
   }
   if (run.lost > 0) line += ", " + std::to_string(run.lost) + " lost for want of room";
   if (!run.came_to_rest) line += ", not at rest after 30 s";

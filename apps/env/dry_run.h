@@ -22,8 +22,9 @@ struct DryRun {
   SentList sent;
   SentNames names;
   std::int64_t messages_in = 0;
-  std::int64_t lost = 0;  ///< of them, for which the generator had no room
-  std::int64_t end = 0;   ///< samples of the virtual clock
+  std::int64_t lost = 0;            ///< for which the generator or a port had no room
+  std::int64_t overload_bytes = 0;  ///< passed through, of messages that waited too long
+  std::int64_t end = 0;             ///< samples of the virtual clock
   std::vector<PortUse> ports;
   std::vector<engine::PortSpec> port_specs;    ///< of `ports`
   std::vector<std::vector<int>> output_ports;  ///< [patch][output]; -1: OSC or voltage

@@ -8,6 +8,7 @@
 
 #include "cable.h"
 #include "lane_curve.h"
+#include "note_admission.h"
 #include "output_lane.h"
 
 namespace knotwave::engine {
@@ -27,7 +28,7 @@ struct Waiting {
 /// A ring of messages in the order in which they came.
 class Queue {
  public:
-  Queue() : ring_(OutputPort::kMostWaiting + OutputPort::kEndings) {}
+  Queue() : ring_(OutputPort::kMostWaiting + OutputPort::kEndings + OutputPort::kNoteOffs) {}
   std::size_t size() const KNOTWAVE_RT { return size_; }
   const Waiting& operator[](std::size_t i) const KNOTWAVE_RT {
     return ring_[(begin_ + i) % ring_.size()];
@@ -107,6 +108,7 @@ struct OutputPort::State {
   std::vector<std::int64_t> lane_bytes;
   Selections selections;
   Queue clocks, messages;
+  NoteAdmission admission;
   std::int64_t waiting_thru_bytes = 0;
   // A group on its way.
   MessageGroup group;
@@ -356,8 +358,7 @@ bool OutputPort::post(const MidiEvent& event, OutputPriority priority, bool is_t
   Queue& queue = priority == OutputPriority::clock ? state_->clocks : state_->messages;
   const std::int64_t bytes = message_bytes(event);
   if (is_thru) state_->cable.count_arrival(bytes, state_->waiting_thru_bytes);
-  const std::size_t room = ends_notes(event) ? kMostWaiting + kEndings : kMostWaiting;
-  if (state_->clocks.size() + state_->messages.size() >= room) {
+  if (!state_->admission.admit(event, state_->clocks.size() + state_->messages.size())) {
     state_->cable.count_loss();
     return false;
   }

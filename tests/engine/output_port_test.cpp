@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -236,6 +238,46 @@ TEST(OutputPort, AFloodIsCountedAndNothingIsLostWhileThereIsRoom) {
   EXPECT_EQ(wire.sent.back().event.bytes[2], 64) << "the lane was sent when there was room";
   EXPECT_NEAR(port->counters().most_waiting_s, 1023 * 3 / kDinBytesPerSecond, 1e-4);
   EXPECT_GT(port->counters().use, 0.9);
+}
+
+TEST(OutputPort, ANoteThatAFullCableLeavesOutIsLeftOutWithItsEndAndNoOtherHangs) {
+  const OutputPortConfig config = din(true);
+  auto port = *OutputPort::create(config);
+  Wire wire(config);
+  std::mt19937_64 random(7);
+  std::vector<std::pair<int, int>> held;
+  std::int64_t refused = 0;
+  const auto post = [&](std::int64_t sample, int status, int channel, int key) {
+    MidiEvent event = message(sample, status | channel, key, 90);
+    refused += port->post(event, OutputPriority::note, true) ? 0 : 1;
+  };
+  constexpr std::int64_t kFlood = 100000;
+  for (std::int64_t sample = 0; sample < kFlood + 100000; sample += 10) {
+    if (sample < kFlood && random() % 2 == 0) {
+      held.emplace_back(random() % 16, random() % 128);
+      post(sample, 0x90, held.back().first, held.back().second);
+    } else if (!held.empty()) {
+      const std::size_t which = random() % held.size();
+      post(sample, 0x80, held[which].first, held[which].second);
+      held.erase(held.begin() + static_cast<std::ptrdiff_t>(which));
+    }
+    play(*port, wire, {}, sample, sample + 10, kRate);
+  }
+  play(*port, wire, {}, kFlood + 100000, kFlood + 900000, kRate);
+  ASSERT_TRUE(held.empty());
+  ASSERT_FALSE(port->is_waiting());
+  EXPECT_GT(refused, 1000);
+  EXPECT_EQ(port->counters().lost, refused);
+  std::map<std::pair<int, int>, int> open;
+  std::int64_t on = 0, off = 0;
+  for (const auto& sent : wire.sent) {
+    const bool begins = sent.event.bytes[0] >> 4 == 9;
+    (begins ? on : off) += 1;
+    int& count = open[{sent.event.channel(), sent.event.bytes[1]}];
+    count = begins ? count + 1 : 0;
+  }
+  for (const auto& [key, count] : open) EXPECT_EQ(count, 0) << key.first << ' ' << key.second;
+  EXPECT_NEAR(static_cast<double>(on), static_cast<double>(off), 0.1 * static_cast<double>(on));
 }
 
 TEST(OutputPort, UsbCarriesSixteenEventsInAnyMillisecondAndALaneOnceInAFrame) {

@@ -79,7 +79,8 @@ class OutputPort {
  public:
   static constexpr int kMostLanes = 512;
   static constexpr std::size_t kMostWaiting = 1024;  ///< messages; more are lost and counted
-  static constexpr std::size_t kEndings = 1024;      ///< of them beyond, for what ends notes
+  static constexpr std::size_t kEndings = 1024;      ///< beyond, for controllers that end notes
+  static constexpr std::size_t kNoteOffs = 4096;     ///< beyond, for ends of notes that were taken
 
   /// [control] Errors: value_out_of_range.
   static Result<std::unique_ptr<OutputPort>> create(const OutputPortConfig& config);
@@ -99,8 +100,9 @@ class OutputPort {
 
   /// A message that must go out, before lanes of lower priority: notes, clock, thru. Times rise.
   /// All but clocks keep their order, so one is as urgent as the most urgent behind it. False:
-  /// kMostWaiting were waiting (kEndings more where it ends notes), it is lost. System exclusive is
-  /// kept by reference until it is sent. Controllers that change what a lane's receiver holds (its
+  /// kMostWaiting were waiting (kEndings more for controllers that end notes), it is lost; so is the
+  /// end of a note whose beginning was. The end of one that was taken is always taken, for two
+  /// beginnings of a key. System exclusive is kept by reference until it is sent. Controllers that change what a lane's receiver holds (its
   /// other half, CC 6, 38, 96 to 101, 121) are minded: the lane says it again. [audio]
   bool post(const base::MidiEvent& event, OutputPriority priority, bool is_thru) KNOTWAVE_RT;
 

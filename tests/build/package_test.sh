@@ -37,7 +37,7 @@ tree() {
     [ "$program" != knotwave-synth ] || printf 'usr/share/%s\n' applications/knotwave-synth.desktop \
       icons/hicolor/scalable/apps/knotwave-synth.svg
   done
-  for folder in banks curves envelopes musicians patches scores sounds tunings; do
+  for folder in banks calibration curves envelopes musicians patches scores sounds tunings; do
     [ ! -d "$source/examples/$folder" ] || tree "examples/$folder" "usr/share/knotwave/examples/$folder" toml mid scl kbm wav flac
   done
   tree docs usr/share/doc/knotwave/docs md svg toml
@@ -95,7 +95,8 @@ for program in "${programs[@]}"; do
   [[ $("$program" --version) == "$program "* ]] || complain "$program --version"
 done
 cd "$work/unpacked/knotwave/usr/share/knotwave"
-knotwave-curve check examples/*/*.toml >"$work/checked" || { cat "$work/checked"; complain "a shipped example has a fault"; }
+shopt -s extglob
+knotwave-curve check examples/!(calibration)/*.toml >"$work/checked" || { cat "$work/checked"; complain "a shipped example has a fault"; }
 count=0
 while IFS= read -r command; do
   count=$((count + 1))

@@ -100,10 +100,11 @@ class OutputPort {
 
   /// A message that must go out, before lanes of lower priority: notes, clock, thru. Times rise.
   /// All but clocks keep their order, so one is as urgent as the most urgent behind it. False:
-  /// kMostWaiting were waiting (kEndings more for controllers that end notes), it is lost; so is the
-  /// end of a note whose beginning was. The end of one that was taken is always taken, for two
-  /// beginnings of a key. System exclusive is kept by reference until it is sent. Controllers that change what a lane's receiver holds (its
-  /// other half, CC 6, 38, 96 to 101, 121) are minded: the lane says it again. [audio]
+  /// kMostWaiting were waiting (kEndings more for controllers that end notes), it is lost; so is
+  /// the end of a note whose beginning was. The end of one that was taken is always taken, for two
+  /// beginnings of a key. System exclusive is kept by reference until it is sent. Controllers that
+  /// change what a lane's receiver holds (its other half, CC 6, 38, 96 to 101, 121) are minded: the
+  /// lane says it again. [audio]
   bool post(const base::MidiEvent& event, OutputPriority priority, bool is_thru) KNOTWAVE_RT;
 
   /// The values of one lane over a block: steps, unrounded; [n + ahead_samples()]. Empty: it holds.

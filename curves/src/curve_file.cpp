@@ -11,7 +11,8 @@ namespace knotwave::curves {
 namespace {
 
 constexpr int kFormatVersion = 1;
-constexpr std::string_view kKindWords[] = {"curve", "patch", "bank", "envelope", "midi-learn"};
+constexpr std::string_view kKindWords[] = {"curve",      "patch",  "bank",       "envelope",
+                                           "midi-learn", "plugin", "calibration"};
 
 Error fault(const base::Node& at, std::string_view source, ErrorCode code, std::string message) {
   Error error = fail(code, std::move(message));
@@ -92,7 +93,8 @@ Result<FileKind> read_file_kind(const base::Node& root, std::string_view source_
   if (word == std::end(kKindWords)) {
     return fault(*kind, source_name, ErrorCode::unknown_name,
                  "kind is '" + kind->text +
-                     "'; it must be one of curve, patch, bank, envelope, midi-learn" +
+                     "'; it must be one of curve, patch, bank, envelope, midi-learn, plugin, "
+                     "calibration" +
                      base::suggestion(kind->text, kKindWords));
   }
   return static_cast<FileKind>(word - std::begin(kKindWords));

@@ -123,11 +123,15 @@ std::string surface_text(const NurbsSurface& surface) {
 
 }  // namespace
 
-std::string write_curves(const CurveSet& set) {
-  std::string text = "format = 1\nkind = \"curve\"\n";
+std::string write_curve_tables(const CurveSet& set) {
+  std::string text;
   for (const NurbsCurve& curve : set.curves) text += curve_text(curve);
   for (const NurbsSurface& surface : set.surfaces) text += surface_text(surface);
   return text;
+}
+
+std::string write_curves(const CurveSet& set) {
+  return "format = 1\nkind = \"curve\"\n" + write_curve_tables(set);
 }
 
 }  // namespace knotwave::curves

@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <array>
 
-#include "knotwave/base/fp_state.h"
 #include "knotwave/base/index.h"
+
+#include "shaper_input.h"
 
 namespace knotwave::dsp {
 namespace {
 
 using base::index_of;
 
-constexpr double kLargestInput = 1e6;
 constexpr double kMaxError = 3e-8;  // of the polynomial form: -150 dB
 
 // With a = t(x0), b = t(x1) the mean of t^k over [a, b] is h_k(a, b) / (k + 1), where
@@ -27,11 +27,6 @@ double mean_of(const double* terms, double a, double b) {
     sum += terms[k] * h;
   }
   return sum;
-}
-
-double conditioned(double x) {
-  if (x != x) return 0;
-  return base::snap_to_zero(std::clamp(x, -kLargestInput, kLargestInput));
 }
 
 Result<curves::CurveProgram> polynomial_program(const curves::NurbsCurve& curve) {
@@ -85,7 +80,7 @@ Result<ShaperProgram> ShaperProgram::create(const curves::NurbsCurve& curve,
 }
 
 ShaperProgram::Input ShaperProgram::locate(double x, int hint) const KNOTWAVE_RT {
-  x = conditioned(x);
+  x = shaper_input(x);
   const int near = std::clamp(hint, 0, pieces_ - 1);
   if (breaks_[index_of(near)] <= x && x < breaks_[index_of(near) + 1]) return {x, near};
   const auto after = std::upper_bound(breaks_.begin(), breaks_.end(), x);
@@ -164,7 +159,7 @@ void Shaper::render(const ShaperProgram& program, std::span<const float> drive,
   const double wet = mix > 0 ? std::min(static_cast<double>(mix), 1.0) : 0.0;
   ShaperProgram::Input last = program.locate(last_, last_piece_);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const double dry = conditioned(static_cast<double>(in[i]));
+    const double dry = shaper_input(static_cast<double>(in[i]));
     const ShaperProgram::Input input =
         program.locate(static_cast<double>(drive[i]) * dry, last.piece);
     for (std::size_t k = 0; k < moved; ++k) now[k] = controls[k][i];

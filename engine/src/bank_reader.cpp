@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "text_line.h"
+
 namespace knotwave::engine {
 namespace {
 
@@ -45,7 +47,7 @@ bool overlap(const BankEntry& a, const BankEntry& b) {
 Result<BankSpec> BankReader::read() {
   TableReader top(root_, source_, "bank");
   for (const char* key : {"format", "kind", "about"}) top.node(key);
-  bank_.name = top.string("name", "");
+  bank_.name = read_text_line(top, "name");
   top.string("about", "");
   bank_.gain_db = top.number("gain_db", 0, -96, 24);
   const Node* programs = top.array("programs");

@@ -86,6 +86,10 @@ bool Engine::is_playing(const BankProgram* bank) const KNOTWAVE_RT {
   return state_->performance.bank() == bank || state_->performance.slots().is_playing(bank);
 }
 
+std::span<const EndedNote> Engine::ended_notes() const KNOTWAVE_RT {
+  return state_->performance.ended_notes();
+}
+
 Engine::Newest Engine::newest() const KNOTWAVE_RT {
   return state_->performance.newest(state_->piece.now());
 }
@@ -100,6 +104,7 @@ void Engine::process(std::span<const Event> events, std::span<float> left, std::
   const base::FpStateGuard fp_state;
   State& s = *state_;
   Piece& piece = s.piece;
+  s.performance.forget_ended_notes();
   const std::size_t frames = std::min(left.size(), right.size());
   const std::int64_t begin = piece.now(), end = begin + static_cast<std::int64_t>(frames);
   const auto close = [&] {

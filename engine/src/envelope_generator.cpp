@@ -58,6 +58,7 @@ Result<std::unique_ptr<EnvelopeGenerator>> EnvelopeGenerator::create(
   auto state = std::make_unique<State>();
   state->config = config;
   state->patches.assign(patches.begin(), patches.end());
+  state->volts = VoltageMix(patches);
   state->lead = static_cast<std::size_t>(std::floor(config.lead_s * config.rate_hz));
   std::vector<int> voices;
   for (const EnvelopePatchProgram* patch : patches) {
@@ -158,6 +159,7 @@ EnvelopeGenerator::EnvelopeGenerator(std::unique_ptr<State> state) : state_(std:
 EnvelopeGenerator::~EnvelopeGenerator() = default;
 
 const std::vector<PortSpec>& EnvelopeGenerator::ports() const { return state_->table.ports; }
+std::size_t EnvelopeGenerator::voltage_channels() const { return state_->volts.channels(); }
 std::int64_t EnvelopeGenerator::now() const KNOTWAVE_RT { return state_->now; }
 std::int64_t EnvelopeGenerator::lost() const KNOTWAVE_RT { return state_->lost; }
 MidiClockStatus EnvelopeGenerator::clock_status() const KNOTWAVE_RT {
@@ -215,6 +217,8 @@ void EnvelopeGenerator::say_again(int port) KNOTWAVE_RT {
 }
 void EnvelopeGenerator::go_to_rest() KNOTWAVE_RT { state_->go_to_rest(); }
 bool EnvelopeGenerator::is_at_rest() const KNOTWAVE_RT { return state_->is_at_rest(); }
+bool EnvelopeGenerator::is_still() const KNOTWAVE_RT { return state_->is_still(); }
+void EnvelopeGenerator::end_all() KNOTWAVE_RT { state_->end_all(); }
 
 void EnvelopeGenerator::State::go_to_rest() KNOTWAVE_RT {
   if (is_resting) return;
@@ -225,6 +229,21 @@ void EnvelopeGenerator::State::go_to_rest() KNOTWAVE_RT {
     players[i]->release_all();
     post_player_messages(static_cast<int>(i));
   }
+  end_thru();
+}
+
+void EnvelopeGenerator::State::end_all() KNOTWAVE_RT {
+  if (is_resting) return;
+  event_count = 0;
+  for (std::size_t i = 0; i < players.size(); ++i) {
+    players[i]->end_all();
+    post_player_messages(static_cast<int>(i));
+  }
+  for (LaneRow& row : rows) row.still = 0;
+  end_thru();
+}
+
+void EnvelopeGenerator::State::end_thru() KNOTWAVE_RT {
   if (ports.empty()) return;
   base::MidiEvent event;
   event.time.sample = now;
@@ -286,6 +305,23 @@ bool EnvelopeGenerator::State::is_at_rest() const KNOTWAVE_RT {
     const OutputSpec& spec = table.routes[static_cast<std::size_t>(lane.routes.front())].spec;
     const int step = ports[static_cast<std::size_t>(lane.port)]->last_step(lane.port_lane);
     if (step != rest_step(spec)) return false;
+  }
+  return true;
+}
+
+bool EnvelopeGenerator::State::is_still() const KNOTWAVE_RT {
+  if (event_count != 0 || (is_resting && !is_at_rest())) return false;
+  for (const auto& player : players) {
+    if (!player->is_still()) return false;
+  }
+  for (const auto& port : ports) {
+    if (port->is_waiting()) return false;
+  }
+  for (const LaneRow& row : rows) {
+    if (row.is_told && !holds(row)) return false;
+  }
+  for (std::size_t i = 0; i < osc.size(); ++i) {
+    if (table.routes[i].spec.kind == OutputKind::osc && !osc[i].is_settled) return false;
   }
   return true;
 }

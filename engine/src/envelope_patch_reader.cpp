@@ -10,6 +10,7 @@
 #include "knotwave/base/suggest.h"
 
 #include "patch_words.h"
+#include "text_line.h"
 
 namespace knotwave::engine {
 namespace {
@@ -84,7 +85,7 @@ void EnvelopePatchReader::read_ports() {
     TableReader reader(member->value, source_, "port '" + member->key + "'");
     PortSpec port;
     port.name = member->key;
-    port.device = reader.string("device", "");
+    port.device = read_text_line(reader, "device");
     constexpr PortSpec::Wire kWires[] = {PortSpec::Wire::none, PortSpec::Wire::usb,
                                          PortSpec::Wire::din};
     port.wire = kWires[reader.choice("wire", 1, {"none", "usb", "din"})];

@@ -19,6 +19,8 @@ EnvelopePlayer::State::State(const EnvelopePlayerConfig& player_config,
       trigger(spec.trigger),
       clock(trigger) {
   tempo.reset(config.rate_hz);
+  targets.reset(config.rate_hz);
+  trims.reset(config.rate_hz);
   is_poly = trigger.kind == TriggerSpec::Kind::note && spec.patch.mode == PlayMode::poly;
   const auto count = is_poly ? static_cast<std::size_t>(spec.patch.polyphony) : std::size_t{1};
   voices.resize(count);
@@ -26,11 +28,15 @@ EnvelopePlayer::State::State(const EnvelopePlayerConfig& player_config,
   out_channels.assign(count, std::max(trigger.channel, 1));
   row_length = kMostSamples + static_cast<std::size_t>(config.most_ahead_samples);
   values.resize(count * program.outputs().size() * row_length);
+  fill_with_rest();
+  follow_loop({0, 0});
+}
+
+void EnvelopePlayer::State::fill_with_rest() KNOTWAVE_RT {
   for (std::size_t row = 0; row * row_length < values.size(); ++row) {
     const double rest = program.outputs()[row % program.outputs().size()].spec.rest;
     std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(row * row_length), row_length, rest);
   }
-  follow_loop({0, 0});
 }
 
 Result<std::unique_ptr<EnvelopePlayer>> EnvelopePlayer::create(
@@ -81,8 +87,11 @@ void EnvelopePlayer::handle(const Event& event) KNOTWAVE_RT {
     case Event::Kind::position:
       s.mend_song(static_cast<double>(event.song_clocks) / kSongClocksPerQuarter, time);
       break;
-    case Event::Kind::install_bank:
     case Event::Kind::set_target:
+      s.set_target(event, time);
+      break;
+    case Event::Kind::install_bank:
+    case Event::Kind::set_note:
       break;  // of the synth
   }
 }
@@ -219,11 +228,21 @@ void EnvelopePlayer::State::render(std::size_t n) KNOTWAVE_RT {
     advance_clocked(clock, voices[0], now, n, 0, true);
   } else {
     for (std::size_t i = 0; i < voices.size(); ++i) {
-      voices[i].render(program, tempo, now, n, scratch, rows(i, 0));
+      render_voice(voices[i], now, n, rows(i, 0));
     }
   }
   now += static_cast<std::int64_t>(n);
   tell_places({now - 1, 0});
+}
+
+void EnvelopePlayer::State::render_voice(EnvelopeVoice& voice, std::int64_t first, std::size_t n,
+                                         const EnvelopeVoice::Rows& rows) KNOTWAVE_RT {
+  voice.render(program, tempo, first, n, scratch, rows);
+  if (trims.is_empty() || !voice.has_begun()) return;
+  for (std::size_t i = 0; i < program.outputs().size(); ++i) {
+    trims.apply(i, program.outputs()[i].spec, first,
+                {rows.first + i * rows.length + rows.offset, n});
+  }
 }
 
 void EnvelopePlayer::predict(std::size_t n) KNOTWAVE_RT {
@@ -242,8 +261,8 @@ void EnvelopePlayer::State::predict(std::size_t n) KNOTWAVE_RT {
     if (!voices[i].has_begun()) continue;
     ahead_voice.look_ahead_from(voices[i], program);
     for (std::size_t done = 0; done < n; done += kChunk) {
-      ahead_voice.render(program, tempo, now + static_cast<std::int64_t>(done),
-                         std::min(kChunk, n - done), scratch, rows(i, rendered + done));
+      render_voice(ahead_voice, now + static_cast<std::int64_t>(done), std::min(kChunk, n - done),
+                   rows(i, rendered + done));
     }
   }
 }
@@ -290,8 +309,10 @@ std::int64_t EnvelopePlayer::now() const KNOTWAVE_RT { return state_->now; }
 
 bool EnvelopePlayer::is_still() const KNOTWAVE_RT {
   const State& s = *state_;
-  if (s.is_clocked()) return false;
-  return std::all_of(s.voices.begin(), s.voices.end(), [&](const EnvelopeVoice& voice) {
+  if (s.is_clocked() || !s.trims.is_still(s.now)) return false;
+  const bool sounds = std::any_of(s.sounding.begin(), s.sounding.end(),
+                                  [](const State::Sounding& note) { return note.is_on; });
+  return !sounds && std::all_of(s.voices.begin(), s.voices.end(), [&](const EnvelopeVoice& voice) {
     return !voice.gate_is_open() && voice.is_still(s.program, s.now);
   });
 }
@@ -313,7 +334,13 @@ void EnvelopePlayer::State::release_all() KNOTWAVE_RT {
   const base::SampleTime time{now, 0};
   tell_places(time);
   is_halted = true;
+  let_all_go(time);
+}
+
+/// Gates, keys, pedals, and the notes of places.
+void EnvelopePlayer::State::let_all_go(base::SampleTime time) KNOTWAVE_RT {
   open_channels = 0;
+  hand_is_open = false;
   for (int channel = 0; channel < 16; ++channel) {
     channels[static_cast<std::size_t>(channel)].release_pedals();
     silence(channel, time);
@@ -324,6 +351,42 @@ void EnvelopePlayer::State::release_all() KNOTWAVE_RT {
       sounding[i].end = time;
       end_place_note(i);
     }
+  }
+}
+
+void EnvelopePlayer::end_all() KNOTWAVE_RT {
+  state_->forget_taken();
+  state_->end_all();
+}
+
+void EnvelopePlayer::State::end_all() KNOTWAVE_RT {
+  const base::SampleTime time{now, 0};
+  tell_places(time);
+  let_all_go(time);
+  for (EnvelopeVoice& voice : voices) voice.forget();
+  fill_with_rest();
+  if (is_clocked()) clock.seek(tempo.beats_at(time));
+  follow_loop(time);
+}
+
+void EnvelopePlayer::State::set_target(const Event& event, base::SampleTime time) KNOTWAVE_RT {
+  const std::int64_t sample = base::first_sample(time);
+  targets.forget_rested(sample);
+  if (event.slot == Event::kEverySlot) {
+    targets.go_back(sample);
+    trims.go_back(sample);
+  } else if (event.slot < kSlotCount) {
+    targets.set(event.slot, event.number, sample);
+  } else if (OutputTrims::has(event.slot)) {
+    trims.set(event.slot, event.number, sample);
+  } else if (event.slot == kSlotGateByHand) {
+    take_trigger(event.number != 0, time);
+  } else if (event.slot == kSlotGate) {
+    move_gate(event.number, time);
+  } else if (event.slot == kSlotSong) {
+    run_song(event.number, time);
+  } else if (event.slot == kSlotSongStops) {
+    stop_song(time);
   }
 }
 

@@ -7,7 +7,8 @@
 namespace knotwave::engine {
 
 bool EnvelopePlayer::State::is_clocked() const KNOTWAVE_RT {
-  return trigger.kind == TriggerSpec::Kind::clock && !is_stopped && !is_halted && !waits_for_clock;
+  return trigger.kind == TriggerSpec::Kind::clock && !is_by_hand && !is_stopped && !is_halted &&
+         !waits_for_clock;
 }
 
 // Only the voice's own numbers decide, so that a copy of it can be led ahead.
@@ -54,7 +55,7 @@ void EnvelopePlayer::State::advance_clocked(ClockGate& gate, EnvelopeVoice& voic
     }
     const auto left = static_cast<std::uint64_t>(at - here);
     const std::size_t count = std::min({n - done, kChunk, static_cast<std::size_t>(left)});
-    voice.render(program, tempo, here, count, scratch, rows(0, offset + done));
+    render_voice(voice, here, count, rows(0, offset + done));
     done += count;
   }
 }
@@ -79,14 +80,27 @@ void EnvelopePlayer::State::stop_song(base::SampleTime time) KNOTWAVE_RT {
   if (!is_stopped) stopped_at = tempo.beats_at(time);
   is_stopped = true;
   awaits_clock = waits_for_clock = false;
-  if (trigger.kind == TriggerSpec::Kind::clock) close(0, time, 64);
+  if (trigger.kind == TriggerSpec::Kind::clock && !is_by_hand) close(0, time, 64);
 }
 
 void EnvelopePlayer::State::place_song(double beats, base::SampleTime time) KNOTWAVE_RT {
-  if (trigger.kind == TriggerSpec::Kind::clock) close(0, time, 64);
+  if (trigger.kind == TriggerSpec::Kind::clock && !is_by_hand) close(0, time, 64);
   stopped_at = beats;
   tempo.set_position(time, beats);
   clock.seek(beats);
+}
+
+void EnvelopePlayer::State::run_song(double beats, base::SampleTime time) KNOTWAVE_RT {
+  constexpr double kOtherPlace = 1.0 / 96;
+  if (!(std::abs(beats) <= kMostTarget)) return;
+  const bool runs = !is_stopped && !is_halted && !waits_for_clock;
+  if (runs && std::abs(beats - tempo.beats_at(time)) < kOtherPlace) {
+    tempo.set_position(time, beats);
+    return;
+  }
+  place_song(beats, time);
+  is_stopped = is_halted = awaits_clock = waits_for_clock = false;
+  follow_loop(time);
 }
 
 /// What a clock knows of the song better than the tempo did: an open gate stays open, and the next

@@ -2,6 +2,7 @@
 // Notes and controllers to gates: which voice a note gets, what keeps its gate open, which channel
 // it goes out on.
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "envelope_player_state.h"
@@ -22,6 +23,7 @@ NoteContext EnvelopePlayer::State::context(int channel, int key, int velocity,
   NoteContext note;
   note.channel = &channels[static_cast<std::size_t>(channel)];
   note.master = &channels[static_cast<std::size_t>(zones.master_of(channel))];
+  note.targets = {&targets, nullptr, nullptr};
   note.note = key;
   note.key = key;
   note.velocity = velocity;
@@ -55,7 +57,7 @@ void EnvelopePlayer::State::note_on(int channel, int key, int velocity,
   const bool is_note = trigger.kind == TriggerSpec::Kind::note;
   if (is_note && (key < trigger.key_low || key > trigger.key_high || !is_selected(channel))) return;
   if (spec.notes == NoteOutput::thru) pass_on(channel, key, velocity, time);
-  if (!is_note) return;
+  if (!is_note || is_by_hand) return;
   if (is_poly) {
     play_poly(channel, key, velocity, time);
   } else {
@@ -66,7 +68,7 @@ void EnvelopePlayer::State::note_on(int channel, int key, int velocity,
 void EnvelopePlayer::State::note_off(int channel, int key, int velocity,
                                      base::SampleTime time) KNOTWAVE_RT {
   pass_off(channel, key, velocity, time);
-  if (trigger.kind != TriggerSpec::Kind::note) return;
+  if (trigger.kind != TriggerSpec::Kind::note || is_by_hand) return;
   if (!is_poly) {
     if (stacks[static_cast<std::size_t>(channel)].lift(key, sustains(channel))) {
       settle_mono(time, velocity);
@@ -194,7 +196,8 @@ void EnvelopePlayer::State::play_mono(int channel, int key, int velocity,
 }
 
 void EnvelopePlayer::State::settle_mono(base::SampleTime time, int release_velocity) KNOTWAVE_RT {
-  if (trigger.kind != TriggerSpec::Kind::note || is_poly || !voices[0].gate_is_open()) return;
+  if (trigger.kind != TriggerSpec::Kind::note || is_poly || is_by_hand) return;
+  if (!voices[0].gate_is_open()) return;
   const Chosen chosen = choose();
   if (chosen.entry == nullptr) {
     close(0, time, release_velocity);
@@ -231,7 +234,7 @@ void EnvelopePlayer::State::update_pedals(int channel, base::SampleTime time) KN
   const bool dropped = !sostenuto && sostenuto_was_on[c];
   sustain_was_on[c] = sustain;
   sostenuto_was_on[c] = sostenuto;
-  if (trigger.kind != TriggerSpec::Kind::note) return;
+  if (trigger.kind != TriggerSpec::Kind::note || is_by_hand) return;
   if (!is_poly) {
     if (caught) stacks[c].catch_sostenuto();
     if (dropped) stacks[c].drop_sostenuto(sustain);
@@ -249,7 +252,7 @@ void EnvelopePlayer::State::update_pedals(int channel, base::SampleTime time) KN
 
 void EnvelopePlayer::State::lift_keys(int channel, base::SampleTime time) KNOTWAVE_RT {
   end_passed(channel, time);
-  if (trigger.kind != TriggerSpec::Kind::note) return;
+  if (trigger.kind != TriggerSpec::Kind::note || is_by_hand) return;
   const bool sustain = sustains(channel);
   if (!is_poly) {
     stacks[static_cast<std::size_t>(channel)].lift_all(sustain);
@@ -267,7 +270,7 @@ void EnvelopePlayer::State::lift_keys(int channel, base::SampleTime time) KNOTWA
 // Whatever pedals hold.
 void EnvelopePlayer::State::silence(int channel, base::SampleTime time) KNOTWAVE_RT {
   end_passed(channel, time);
-  if (trigger.kind != TriggerSpec::Kind::note) return;
+  if (trigger.kind != TriggerSpec::Kind::note || is_by_hand) return;
   stacks[static_cast<std::size_t>(channel)].clear();
   for (std::size_t i = 0; is_poly && i < slots.size(); ++i) {
     if (slots[i].channel == channel) close(i, time, 64);
@@ -277,7 +280,7 @@ void EnvelopePlayer::State::silence(int channel, base::SampleTime time) KNOTWAVE
 // The gate is open while the controller is up on any channel that is heard; the first says whose
 // it is.
 void EnvelopePlayer::State::follow_gate(int channel, base::SampleTime time) KNOTWAVE_RT {
-  if (trigger.kind != TriggerSpec::Kind::gate || !hears(channel)) return;
+  if (trigger.kind != TriggerSpec::Kind::gate || is_by_hand || !hears(channel)) return;
   const int value = channels[static_cast<std::size_t>(channel)].seven_bits(trigger.control);
   const std::uint32_t bit = 1U << channel, before = open_channels;
   if (value < trigger.threshold) {
@@ -293,13 +296,46 @@ void EnvelopePlayer::State::follow_gate(int channel, base::SampleTime time) KNOT
 }
 
 void EnvelopePlayer::State::follow_loop(base::SampleTime time) KNOTWAVE_RT {
-  if (trigger.kind != TriggerSpec::Kind::loop) return;
+  if (trigger.kind != TriggerSpec::Kind::loop || is_by_hand) return;
   const int channel = std::max(trigger.channel - 1, 0);
   const bool should_run = is_selected(channel) && !is_halted;
   if (should_run && !voices[0].gate_is_open()) {
     open(0, context(channel, kGateKey, kGateVelocity, notes + 1), time, true);
   } else if (!should_run) {
     close(0, time, 64);
+  }
+}
+
+// Keys that are down when the trigger comes back were not heard: they open nothing.
+void EnvelopePlayer::State::take_trigger(bool by_hand, base::SampleTime time) KNOTWAVE_RT {
+  if (by_hand == is_by_hand) return;
+  for (NoteStack& stack : stacks) stack.clear();
+  for (std::size_t i = 0; i < voices.size(); ++i) close(i, time, 64);
+  is_by_hand = by_hand;
+  hand_is_open = false;
+  open_channels = 0;
+  if (by_hand) return;
+  clock.seek(tempo.beats_at(time));
+  follow_loop(time);
+  for (int channel = 0; channel < 16; ++channel) follow_gate(channel, time);
+}
+
+void EnvelopePlayer::State::move_gate(double velocity, base::SampleTime time) KNOTWAVE_RT {
+  const bool opens = velocity > 0;
+  if (!is_by_hand || opens == hand_is_open) return;
+  hand_is_open = opens;
+  if (!opens) {
+    for (std::size_t i = 0; i < voices.size(); ++i) close(i, time, 64);
+    return;
+  }
+  const int channel = std::max(trigger.channel - 1, 0);
+  const int strength = static_cast<int>(std::clamp(std::floor(velocity + 0.5), 1.0, 127.0));
+  if (is_poly) {
+    play_poly(channel, kGateKey, strength, time);
+  } else {
+    slots[0].channel = channel;
+    slots[0].key = kGateKey;
+    open(0, context(channel, kGateKey, strength, notes + 1), time, true);
   }
 }
 

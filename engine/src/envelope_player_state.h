@@ -13,6 +13,8 @@
 #include "clock_gate.h"
 #include "envelope_voice.h"
 #include "member_channels.h"
+#include "output_trims.h"
+#include "slot_targets.h"
 #include "voice_slots.h"
 
 namespace knotwave::engine {
@@ -31,7 +33,13 @@ struct EnvelopePlayer::State {
   void reset_system(base::SampleTime time) KNOTWAVE_RT;
   void render(std::size_t n) KNOTWAVE_RT;
   void predict(std::size_t n) KNOTWAVE_RT;
+  void set_target(const Event& event, base::SampleTime time) KNOTWAVE_RT;
   void release_all() KNOTWAVE_RT;
+  void end_all() KNOTWAVE_RT;
+  void let_all_go(base::SampleTime time) KNOTWAVE_RT;
+  void fill_with_rest() KNOTWAVE_RT;
+  void render_voice(EnvelopeVoice& voice, std::int64_t first, std::size_t n,
+                    const EnvelopeVoice::Rows& rows) KNOTWAVE_RT;
   EnvelopeVoice::Rows rows(std::size_t voice, std::size_t offset) KNOTWAVE_RT;
   void forget_taken() KNOTWAVE_RT;
   void emit(const PlayerMessage& message) KNOTWAVE_RT;
@@ -69,6 +77,8 @@ struct EnvelopePlayer::State {
   void silence(int channel, base::SampleTime time) KNOTWAVE_RT;
   void follow_gate(int channel, base::SampleTime time) KNOTWAVE_RT;
   void follow_loop(base::SampleTime time) KNOTWAVE_RT;
+  void take_trigger(bool by_hand, base::SampleTime time) KNOTWAVE_RT;
+  void move_gate(double velocity, base::SampleTime time) KNOTWAVE_RT;
   bool speaks_for(int channel, int other) const KNOTWAVE_RT {
     return channel == other || zones.master_of(other) == channel;
   }
@@ -82,6 +92,7 @@ struct EnvelopePlayer::State {
   void start_song(base::SampleTime time) KNOTWAVE_RT;
   void continue_song(base::SampleTime time) KNOTWAVE_RT;
   void stop_song(base::SampleTime time) KNOTWAVE_RT;
+  void run_song(double beats, base::SampleTime time) KNOTWAVE_RT;
   void mend_song(double beats, base::SampleTime time) KNOTWAVE_RT;
   void place_song(double beats, base::SampleTime time) KNOTWAVE_RT;
   void hear_clock(base::SampleTime time) KNOTWAVE_RT;
@@ -100,6 +111,10 @@ struct EnvelopePlayer::State {
   TempoClock tempo;
   std::array<ChannelState, 16> channels;
   MpeZones zones;
+  SlotTargets targets;
+  OutputTrims trims;
+  bool is_by_hand = false;  ///< kSlotGate opens the gate, not the trigger
+  bool hand_is_open = false;
 
   // Who plays. `slots` says what keeps each gate open.
   std::vector<EnvelopeVoice> voices;

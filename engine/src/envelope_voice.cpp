@@ -89,7 +89,8 @@ bool EnvelopeVoice::is_active(const EnvelopePatchProgram& program) const KNOTWAV
 
 bool EnvelopeVoice::is_still(const EnvelopePatchProgram& program,
                              std::int64_t first) const KNOTWAVE_RT {
-  return !has_begun() || (!program.hears_lfo() && modulation_.is_still(program.patch(), first));
+  return !has_begun() || (!program.hears_lfo() && note_.targets_are_still(first) &&
+                          modulation_.is_still(program.patch(), first));
 }
 
 void EnvelopeVoice::look_ahead_from(const EnvelopeVoice& other,

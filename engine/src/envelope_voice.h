@@ -60,6 +60,12 @@ class EnvelopeVoice {
   void watch(const EnvelopePatchProgram& program, base::SampleTime until,
              Passages& passages) KNOTWAVE_RT;
 
+  /// As if it had never begun. [audio]
+  void forget() KNOTWAVE_RT {
+    number_ = 0;
+    is_open_ = was_still_ = false;
+  }
+
   bool has_begun() const KNOTWAVE_RT { return number_ > 0; }
   bool gate_is_open() const KNOTWAVE_RT { return is_open_; }
   /// Its gate is open or an envelope still runs. [audio]

@@ -48,6 +48,8 @@ bool EnvelopeGenerator::set_tempo(base::SampleTime time,
   return state_->push(told);
 }
 
+bool EnvelopeGenerator::tell(const Event& event) KNOTWAVE_RT { return state_->push(event); }
+
 bool EnvelopeGenerator::State::push(const Event& event) KNOTWAVE_RT {
   if (is_resting) return true;
   const bool is_ending = event.kind == Event::Kind::midi && ends_notes(event.midi);
@@ -105,6 +107,7 @@ std::size_t EnvelopeGenerator::State::block_length(std::int64_t until) const KNO
 }
 
 void EnvelopeGenerator::State::play_block(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT {
+  volts.begin(now, n);
   for (std::size_t i = 0; i < players.size(); ++i) {
     EnvelopePlayer& player = *players[i];
     player.render(n);
@@ -113,6 +116,7 @@ void EnvelopeGenerator::State::play_block(std::size_t n, GeneratorSink& sink) KN
   }
   fill_rows(n);
   send_osc(n, sink);
+  send_volts(sink);
   render_ports(n, sink);
   now += static_cast<std::int64_t>(n);
   for (LaneRow& row : rows) {
@@ -223,10 +227,22 @@ void EnvelopeGenerator::State::send_osc(std::size_t n, GeneratorSink& sink) KNOT
     for (std::size_t k = 0; k < n; ++k) {
       const std::int64_t sample = now + static_cast<std::int64_t>(k);
       const double value = is_playing ? player.values(voice, route.output)[k] : route.spec.rest;
-      if (sample < state.next || (state.has_sent && value == state.sent)) continue;
-      state = {value, true, sample + state.period, state.period};
+      state.is_settled = state.has_sent && value == state.sent;
+      if (sample < state.next || state.is_settled) continue;
+      state = {value, true, true, sample + state.period, state.period};
       sink.osc(route.patch, route.output, {sample, 0}, value);
     }
+  }
+}
+
+void EnvelopeGenerator::State::send_volts(GeneratorSink& sink) KNOTWAVE_RT {
+  if (volts.channels() == 0) return;
+  volts.end([this](std::size_t patch, std::size_t output) KNOTWAVE_RT {
+    const EnvelopePlayer& player = *players[patch];
+    return player.values(std::max(player.newest_voice(), 0), static_cast<int>(output));
+  });
+  for (std::size_t c = 0; c < volts.channels(); ++c) {
+    sink.volts(static_cast<int>(c), now, volts.volts(c));
   }
 }
 
@@ -250,13 +266,25 @@ void EnvelopeGenerator::State::post_player_messages(int patch) KNOTWAVE_RT {
   const bool is_thru = patches[p]->spec().notes == NoteOutput::thru;
   for (const PlayerMessage& message : players[p]->take_messages()) {
     int port = notes_ports[p];
-    if (message.kind == PlayerMessage::Kind::place_gate) continue;  // of the audio callback
+    if (message.kind == PlayerMessage::Kind::place_gate) {
+      volts.hear(p, message);
+      continue;
+    }
     if (message.kind == PlayerMessage::Kind::place_note) {
       port = place_ports[p][static_cast<std::size_t>(message.place_event)];
     }
     const bool passes = is_thru && message.kind == PlayerMessage::Kind::thru;
-    ports[static_cast<std::size_t>(port)]->post(message.midi, priority_of(message.midi), passes);
+    MidiEvent midi = message.midi;
+    // Without a lead, cables have gone as far as the players: what came between the last two
+    // samples goes out with the next, however blocks fall.
+    if (lead == 0) midi.time = {base::first_sample(midi.time), 0};
+    ports[static_cast<std::size_t>(port)]->post(midi, priority_of(midi), passes);
   }
+}
+
+/// Long enough that the cable has seen all of what it holds.
+bool EnvelopeGenerator::State::holds(const LaneRow& row) const KNOTWAVE_RT {
+  return row.still > static_cast<std::int64_t>(2 * kBlock + lead);
 }
 
 void EnvelopeGenerator::State::render_ports(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT {
@@ -271,8 +299,7 @@ void EnvelopeGenerator::State::render_ports(std::size_t n, GeneratorSink& sink) 
     const auto port = static_cast<std::size_t>(lane.port);
     auto& span = port_lanes[port][static_cast<std::size_t>(lane.port_lane)];
     span = {};
-    const bool holds = rows[i].still > static_cast<std::int64_t>(2 * kBlock + lead);
-    if (!rows[i].is_told || holds) continue;
+    if (!rows[i].is_told || holds(rows[i])) continue;
     span = std::span(rows[i].values).subspan(offset, count + ports[port]->ahead_samples());
   }
   for (std::size_t port = 0; port < ports.size(); ++port) {

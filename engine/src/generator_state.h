@@ -10,6 +10,7 @@
 #include "knotwave/engine/envelope_generator.h"
 #include "knotwave/engine/event.h"
 #include "knotwave/engine/midi_clock.h"
+#include "knotwave/engine/voltage_mix.h"
 
 #include "generator_routes.h"
 
@@ -38,6 +39,7 @@ struct LaneAddress {
 struct OscState {
   double sent = 0;
   bool has_sent = false;
+  bool is_settled = false;  ///< it has sent what it is
   std::int64_t next = 0, period = 1;
 };
 
@@ -64,6 +66,7 @@ struct EnvelopeGenerator::State {
   void fill_rows(std::size_t n) KNOTWAVE_RT;
   void fill_row(std::size_t lane, std::size_t n) KNOTWAVE_RT;
   void send_osc(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT;
+  void send_volts(GeneratorSink& sink) KNOTWAVE_RT;
   // To the cables.
   void post_player_messages(int patch) KNOTWAVE_RT;
   void post_thru(const base::MidiEvent& event) KNOTWAVE_RT;
@@ -71,8 +74,12 @@ struct EnvelopeGenerator::State {
   void take_snapshot() KNOTWAVE_RT;
   // Rest.
   void go_to_rest() KNOTWAVE_RT;
+  void end_thru() KNOTWAVE_RT;
+  void end_all() KNOTWAVE_RT;
   void visit_told() KNOTWAVE_RT;
   bool is_at_rest() const KNOTWAVE_RT;
+  bool is_still() const KNOTWAVE_RT;
+  bool holds(const LaneRow& row) const KNOTWAVE_RT;
 
   EnvelopeGeneratorConfig config;
   std::vector<const EnvelopePatchProgram*> patches;
@@ -82,12 +89,13 @@ struct EnvelopeGenerator::State {
   std::vector<LaneRow> rows;                                    ///< of table.lanes
   std::vector<std::vector<OutputPort::LaneValues>> port_lanes;  ///< [port][lane of the port]
   std::vector<OscState> osc;                                    ///< of table.routes
-  std::vector<LaneAddress> addresses;                           ///< of table.lanes
-  std::vector<int> notes_ports;                                 ///< of each patch
-  std::vector<std::vector<int>> place_ports;                    ///< [patch][place event]
-  bool notes_reach_first_port = false;  ///< a patch passes them there: thru leaves them out
-  std::size_t lead = 0;                 ///< of the players before the cables
-  std::size_t predict = 0;              ///< beyond the players' last sample
+  VoltageMix volts{{}};
+  std::vector<LaneAddress> addresses;         ///< of table.lanes
+  std::vector<int> notes_ports;               ///< of each patch
+  std::vector<std::vector<int>> place_ports;  ///< [patch][place event]
+  bool notes_reach_first_port = false;        ///< a patch passes them there: thru leaves them out
+  std::size_t lead = 0;                       ///< of the players before the cables
+  std::size_t predict = 0;                    ///< beyond the players' last sample
   std::int64_t now = 0;
 
   std::vector<Event> events;  ///< a ring

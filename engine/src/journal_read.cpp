@@ -15,6 +15,7 @@ namespace knotwave::engine {
 namespace {
 
 constexpr std::size_t kMaxBanks = 65536;
+constexpr std::int32_t kMaxNote = std::numeric_limits<std::int32_t>::max();
 constexpr std::int64_t kMaxSample = std::int64_t{1} << 62;
 constexpr std::int64_t kMaxSongClocks = std::int64_t{1} << 53;
 constexpr int kMaxVoices = 4096;  // as Engine::create() has it
@@ -52,6 +53,9 @@ class Reader {
   void read_time(std::string_view text, JournalRecord& record);
   void read_midi(JournalRecord& record);
   void read_target(JournalRecord& record);
+  void read_set_note(JournalRecord& record);
+  void read_channel(JournalRecord& record);
+  void read_slot(JournalRecord& record);
 
   std::string_view text_;
   const std::string& source_;
@@ -288,6 +292,12 @@ void Reader::read_record(const Journal& journal, JournalRecord& record) {
   const std::string_view what = word();
   if (what == "midi") {
     read_midi(record);
+  } else if (what == "numbered") {
+    record.note = number<std::int32_t>("a note's number", 0, kMaxNote);
+    read_midi(record);
+  } else if (what == "modulation" || what == "expression") {
+    record.is_expression = what == "expression";
+    read_set_note(record);
   } else if (what == "tempo") {
     record.kind = Event::Kind::tempo;
     record.number = real("microseconds per quarter note");
@@ -312,7 +322,8 @@ void Reader::read_record(const Journal& journal, JournalRecord& record) {
     read_target(record);
   } else {
     fault(ErrorCode::unknown_name,
-          "'midi', 'tempo', 'position', 'bank', 'notes_off' or 'target' must be here after a time");
+          "'midi', 'numbered', 'tempo', 'position', 'bank', 'notes_off', 'target', 'modulation' or "
+          "'expression' must be here after a time");
   }
 }
 
@@ -331,16 +342,40 @@ void Reader::read_midi(JournalRecord& record) {
 
 void Reader::read_target(JournalRecord& record) {
   record.kind = Event::Kind::set_target;
-  record.every_channel = skip(kEveryChannelWord);
-  if (!record.every_channel) {
-    record.bytes[0] = static_cast<std::uint8_t>(number("a channel", 1, 16) - 1);
+  read_channel(record);
+  read_slot(record);
+}
+
+void Reader::read_channel(JournalRecord& record) {
+  record.every_channel = skip(kEveryWord);
+  if (record.every_channel) return;
+  record.bytes[0] = static_cast<std::uint8_t>(number("a channel", 1, 16) - 1);
+}
+
+void Reader::read_set_note(JournalRecord& record) {
+  record.kind = Event::Kind::set_note;
+  if (skip(kNoteWord)) {
+    record.note = number<std::int32_t>("a note's number", 0, kMaxNote);
+  } else {
+    read_channel(record);
+    record.bytes[1] = skip(kEveryWord) ? static_cast<std::uint8_t>(Event::kEveryKey)
+                                       : static_cast<std::uint8_t>(number("a key", 0, 127));
   }
+  read_slot(record);
+}
+
+void Reader::read_slot(JournalRecord& record) {
+  const bool is_of_note = record.kind == Event::Kind::set_note;
   const std::string_view name = word();
   std::uint32_t slot = 0;
   const auto [end, status] = std::from_chars(name.data(), name.data() + name.size(), slot);
   if (const auto known = slot_of_word(name)) {
     record.index = static_cast<std::uint32_t>(*known);
-  } else if (name == kEverySlotWord) {
+  } else if (is_of_note && name == kPressureWord) {
+    record.index = Event::kNotePressure;
+  } else if (is_of_note && name == kTimbreWord) {
+    record.index = Event::kNoteTimbre;
+  } else if (!is_of_note && name == kEverySlotWord) {
     record.index = Event::kEverySlot;
   } else if (status == std::errc{} && end == name.data() + name.size() && slot <= 0xFFFF) {
     record.index = slot;
@@ -364,31 +399,6 @@ Result<Journal> Reader::read() {
 
 Result<Journal> read_journal(std::string_view text, const std::string& source_name) {
   return Reader(text, source_name).read();
-}
-
-std::vector<Event> journal_events(const Journal& journal) {
-  std::vector<Event> events;
-  events.reserve(journal.records.size());
-  for (const JournalRecord& record : journal.records) {
-    Event& event = events.emplace_back();
-    event.kind = record.kind;
-    event.midi.time = record.time;
-    std::copy_n(record.bytes, 3, event.midi.bytes);
-    if (record.sysex_size > 0) {
-      event.midi.sysex = record.sysex.data();
-      event.midi.sysex_size = record.sysex_size;
-    }
-    if (record.kind == Event::Kind::tempo) {
-      event.microseconds_per_quarter = static_cast<std::uint32_t>(record.number);
-    } else if (record.kind == Event::Kind::set_target) {
-      event.slot = static_cast<std::uint16_t>(record.index);
-      event.number = record.number;
-      event.every_channel = record.every_channel;
-    } else if (record.kind == Event::Kind::position) {
-      event.song_clocks = static_cast<std::int64_t>(record.number);
-    }
-  }
-  return events;
 }
 
 }  // namespace knotwave::engine

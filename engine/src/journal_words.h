@@ -7,6 +7,7 @@ namespace knotwave::engine {
 
 inline constexpr std::string_view kMagic = "knotwave-journal";
 inline constexpr std::string_view kEverySlotWord = "all";
-inline constexpr std::string_view kEveryChannelWord = "every";
+inline constexpr std::string_view kEveryWord = "every", kNoteWord = "note";
+inline constexpr std::string_view kPressureWord = "pressure", kTimbreWord = "timbre";
 
 }  // namespace knotwave::engine

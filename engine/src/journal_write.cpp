@@ -97,7 +97,8 @@ class Writer {
     }
     switch (record.kind) {
       case Event::Kind::midi:
-        out_ += " midi";
+        out_ += record.note < 0 ? " midi" : " numbered ";
+        if (record.note >= 0) put(record.note);
         for (const std::uint8_t byte : record.bytes) (out_ += ' ', put_byte(byte));
         for (int i = 0; i < record.sysex_size; ++i) {
           out_ += ' ';
@@ -121,11 +122,15 @@ class Writer {
         break;
       case Event::Kind::set_target:
         out_ += " target ";
-        if (record.every_channel) {
-          out_ += kEveryChannelWord;
-        } else {
-          put((record.bytes[0] & 15) + 1);
-        }
+        write_channel(record);
+        out_ += ' ';
+        write_slot(record.index);
+        out_ += ' ';
+        put_double(record.number);
+        break;
+      case Event::Kind::set_note:
+        out_ += record.is_expression ? " expression " : " modulation ";
+        write_note(record);
         out_ += ' ';
         write_slot(record.index);
         out_ += ' ';
@@ -135,12 +140,44 @@ class Writer {
     out_ += '\n';
   }
 
+  void write_channel(const JournalRecord& record) {
+    if (record.every_channel) {
+      out_ += kEveryWord;
+    } else {
+      put((record.bytes[0] & 15) + 1);
+    }
+  }
+  /// "note 17", or channel and key: "3 60", "every every".
+  void write_note(const JournalRecord& record) {
+    if (record.note >= 0) {
+      (out_ += kNoteWord) += ' ';
+      return put(record.note);
+    }
+    write_channel(record);
+    out_ += ' ';
+    if (record.bytes[1] == Event::kEveryKey) {
+      out_ += kEveryWord;
+    } else {
+      put(static_cast<int>(record.bytes[1]));
+    }
+  }
+
   void write_slot(std::uint32_t slot) {
-    const std::string word = slot < kSlotCount           ? slot_word(static_cast<int>(slot))
-                             : slot == Event::kEverySlot ? std::string(kEverySlotWord)
-                                                         : "";
-    out_ += word;
-    if (word.empty()) put(slot);
+    switch (slot) {
+      case Event::kEverySlot:
+        out_ += kEverySlotWord;
+        return;
+      case Event::kNotePressure:
+        out_ += kPressureWord;
+        return;
+      case Event::kNoteTimbre:
+        out_ += kTimbreWord;
+        return;
+      default:
+        break;
+    }
+    if (slot >= kSlotCount) return put(slot);
+    out_ += slot_word(static_cast<int>(slot));
   }
 
   std::string out_;

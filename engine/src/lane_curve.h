@@ -49,10 +49,15 @@ struct Arc {
   }
 };
 
+/// Far from still neighbours: it comes at its second sample.
+inline bool is_jump(double before, double at_0, double at_1, double after) KNOTWAVE_RT {
+  const double rise = std::abs(at_1 - at_0);
+  return rise > 0.5 && rise > 8 * std::max(std::abs(at_0 - before), std::abs(after - at_1));
+}
+
 inline Arc arc_through(double before, double at_0, double at_1, double after) KNOTWAVE_RT {
+  if (is_jump(before, at_0, at_1, after)) return {at_0, 0, 0};
   const double rise = at_1 - at_0, rise_before = at_0 - before, rise_after = after - at_1;
-  const double rises_beside = std::max(std::abs(rise_before), std::abs(rise_after));
-  if (std::abs(rise) > 0.5 && std::abs(rise) > 8 * rises_beside) return {at_0, 0, 0};
   const double left = rise - rise_before, right = rise_after - rise;
   const double bend = std::abs(left) < std::abs(right) ? left : right;
   return {at_0, rise, std::abs(bend) <= 2 * std::abs(rise) ? bend : 0};
@@ -111,11 +116,16 @@ struct LaneCurve {
       before_time = time;
       before_value = v_here;
     };
-    for (std::int64_t k = (from >> kTickBits) + 1; sample_ticks(k) < until; ++k) {
-      const double v = sample(k);
+    const std::int64_t first_k = (from >> kTickBits) + 1;
+    double last = sample(first_k - 1), v = sample(first_k);
+    for (std::int64_t k = first_k; sample_ticks(k) < until; ++k) {
+      const double next = sample(k + 1);
       s.low = std::min(s.low, v);
       s.high = std::max(s.high, v);
-      add(sample_ticks(k), arc(k - 1).rise == 0 ? before_value : v, v);
+      const bool jumps = std::abs(v - last) > 0.5 && is_jump(sample(k - 2), last, v, next);
+      add(sample_ticks(k), jumps ? before_value : v, v);
+      last = v;
+      v = next;
     }
     add(until, end, end);
     s.mean = until > from ? area / static_cast<double>(until - from) : end;

@@ -212,6 +212,7 @@ void LiveEngine::State::record(const Event& event) KNOTWAVE_RT {
   JournalRecord record;
   record.time = event.midi.time;
   record.kind = event.kind;
+  record.note = event.note;
   std::copy_n(event.midi.bytes, 3, record.bytes);
   switch (event.kind) {
     case Event::Kind::midi:
@@ -225,10 +226,12 @@ void LiveEngine::State::record(const Event& event) KNOTWAVE_RT {
       record.index = playing->number;
       break;
     case Event::Kind::set_target:
+    case Event::Kind::set_note:
       record.index = event.slot;
       record.number = event.number;
       record.bytes[0] = static_cast<std::uint8_t>(event.midi.channel());
       record.every_channel = event.every_channel;
+      record.is_expression = event.is_expression;
       break;
     case Event::Kind::position:
       record.number = static_cast<double>(event.song_clocks);

@@ -74,6 +74,9 @@ LiveEngine::State::~State() {
 LiveEngine::LiveEngine(std::unique_ptr<State> state) : state_(std::move(state)) {}
 LiveEngine::~LiveEngine() = default;
 
+std::span<const EndedNote> LiveEngine::ended_notes() const KNOTWAVE_RT {
+  return state_->engine->ended_notes();
+}
 bool LiveEngine::is_idle() const KNOTWAVE_RT { return state_->engine->is_idle(); }
 double LiveEngine::rate_hz() const KNOTWAVE_RT { return state_->config.engine.rate_hz; }
 

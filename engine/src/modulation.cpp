@@ -68,11 +68,12 @@ Signal over_surface(const curves::SurfaceProgram& surface, const Signal& u, cons
 }
 
 /// What set_target events say, before any map.
-void add_targets(const ChannelTargets* targets, std::int64_t first, std::size_t n,
+void add_targets(const SlotTargets* targets, std::int64_t first, std::size_t n,
                  ModulationScratch& scratch) KNOTWAVE_RT {
   if (targets == nullptr) return;
-  for (const std::uint8_t slot : targets->slots()) {
-    const dsp::Smoother& number = targets->number(slot);
+  for (std::size_t i = 0; i < targets->slots().size(); ++i) {
+    const std::uint8_t slot = targets->slots()[i];
+    const dsp::Smoother& number = targets->number(i);
     Signal value{number.target(), nullptr};
     if (!number.is_still(first)) {
       number.render(first, std::span(scratch.source).first(n));
@@ -161,9 +162,11 @@ double Modulation::value_at_note_on(const PatchProgram::MapPart& map, const Play
 Modulation::SlotNumbers Modulation::numbers_at_note_on(const PatchProgram& patch,
                                                        const NoteContext& note) const KNOTWAVE_RT {
   SlotNumbers slots{};
-  for (const ChannelTargets* targets : note.targets) {
+  for (const SlotTargets* targets : note.targets) {
     if (targets == nullptr) continue;
-    for (const std::uint8_t slot : targets->slots()) slots[slot] += targets->number(slot).target();
+    for (std::size_t i = 0; i < targets->slots().size(); ++i) {
+      slots[targets->slots()[i]] += targets->number(i).target();
+    }
   }
   for (const int index : patch.note_on_maps()) {
     const auto i = static_cast<std::size_t>(index);
@@ -223,7 +226,7 @@ void Modulation::render(const PatchProgram& patch, const NoteContext& note, cons
   follow_song(patch, tempo);
   scratch.slots.fill({});
   if (note.has_targets()) {
-    for (const ChannelTargets* targets : note.targets) add_targets(targets, first, n, scratch);
+    for (const SlotTargets* targets : note.targets) add_targets(targets, first, n, scratch);
   }
   for (const PatchProgram::Step& step : patch.schedule()) {
     const auto index = static_cast<std::size_t>(step.index);

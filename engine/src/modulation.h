@@ -15,14 +15,15 @@
 
 namespace knotwave::engine {
 
-/// What one chunk of one voice works on; a thread has one and every voice it renders uses it.
+/// What one chunk of one voice works on; a thread has one and every voice it renders uses it. Begun
+/// with zeros, so that its pages are there before the audio thread comes to them.
 struct ModulationScratch {
-  std::array<Signal, kSlotCount> slots;  ///< what the maps add up to
-  std::array<ChunkBuffer, kSlotCount> slot_values;
-  std::array<ChunkBuffer, kMaxVoiceEnvelopes> envelopes;
-  std::array<ChunkBuffer, kMaxLfos> lfos;
-  std::array<ChunkBuffer, curves::kMaxControls> controls;
-  ChunkBuffer source, source_v, shaped, beats;
+  std::array<Signal, kSlotCount> slots{};  ///< what the maps add up to
+  std::array<ChunkBuffer, kSlotCount> slot_values{};
+  std::array<ChunkBuffer, kMaxVoiceEnvelopes> envelopes{};
+  std::array<ChunkBuffer, kMaxLfos> lfos{};
+  std::array<ChunkBuffer, curves::kMaxControls> controls{};
+  ChunkBuffer source{}, source_v{}, shaped{}, beats{};
 };
 
 /// The numbers of a curve that maps move, at every sample of a chunk: pointers to [n] each.

@@ -27,7 +27,7 @@ class NoteAdmission {
     if (status == base::MidiStatus::note_on) return admit_on(key_of(event), has_room);
     if (!ends_notes(event)) return has_room;
     const bool is_let_in = waiting < OutputPort::kMostWaiting + OutputPort::kEndings;
-    if (is_let_in && event.bytes[1] != kSustain) forget(event.channel());
+    if (is_let_in && event.bytes[1] != kSustain) forget_left_out(event.channel());
     return is_let_in;
   }
 
@@ -56,9 +56,11 @@ class NoteAdmission {
     --key.left_out;
     return false;
   }
-  void forget(int channel) KNOTWAVE_RT {
+  /// All notes off: nobody may end them one by one. What was let in keeps its place for an end,
+  /// since a receiver in omni mode does not listen to it (MIDI 1.0).
+  void forget_left_out(int channel) KNOTWAVE_RT {
     for (std::size_t key = 0; key < 128; ++key) {
-      keys_[static_cast<std::size_t>(channel) * 128 + key] = {};
+      keys_[static_cast<std::size_t>(channel) * 128 + key].left_out = 0;
     }
   }
 

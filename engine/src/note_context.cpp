@@ -24,10 +24,12 @@ double source_value(const NoteContext& note, MapSource source, int index) KNOTWA
     case MapSource::channel_pressure:
       return std::max(own.pressure(), master.pressure());
     case MapSource::poly_pressure:
-      return own.poly_pressure(note.key);
+      return std::max(note.pressure, own.poly_pressure(note.key));
     case MapSource::pressure:
-      return std::max({own.pressure(), master.pressure(), own.poly_pressure(note.key)});
+      return std::max(
+          {own.pressure(), master.pressure(), note.pressure, own.poly_pressure(note.key)});
     case MapSource::timbre:
+      if (note.timbre >= 0) return note.timbre;
       return (own.timbre_was_sent() ? own : master).control(kTimbre);
     case MapSource::pitch_bend:
       return own.bend();

@@ -6,10 +6,11 @@
 
 #include "knotwave/base/random.h"
 #include "knotwave/engine/channel_state.h"
+#include "knotwave/engine/event.h"
 #include "knotwave/engine/mpe.h"
 #include "knotwave/engine/patch.h"
 
-#include "channel_targets.h"
+#include "slot_targets.h"
 
 namespace knotwave::engine {
 
@@ -17,8 +18,12 @@ struct NoteContext {
   const ChannelState* channel = nullptr;
   const ChannelState* master = nullptr;  ///< == channel outside MPE zones
   /// What set_target events said of all channels, of the channel, and of the zone's master where
-  /// that is another; or null.
-  std::array<const ChannelTargets*, 3> targets{};
+  /// that is another; and what set_note events said of the note, modulation and expression. Or
+  /// null.
+  std::array<const SlotTargets*, 5> targets{};
+  double pressure = 0;  ///< the note's own, by set_note
+  double timbre = -1;   ///< the note's own, by set_note; -1: the channel's
+  std::int32_t number = Event::kNoNote;
   double note = 60;  ///< what sounds, transposition included
   int key = 60;
   int velocity = 100;
@@ -27,13 +32,19 @@ struct NoteContext {
 
   bool is_mpe() const KNOTWAVE_RT { return master != channel; }
   bool has_targets() const KNOTWAVE_RT {
-    return std::any_of(targets.begin(), targets.end(), [](const ChannelTargets* numbers) {
+    return std::any_of(targets.begin(), targets.end(), [](const SlotTargets* numbers) {
       return numbers != nullptr && !numbers->is_empty();
     });
   }
-  /// A set_target event moves this slot.
+  /// What they move rests from `first` on.
+  bool targets_are_still(std::int64_t first) const KNOTWAVE_RT {
+    return std::all_of(targets.begin(), targets.end(), [first](const SlotTargets* numbers) {
+      return numbers == nullptr || numbers->is_still(first);
+    });
+  }
+  /// A set_target or set_note event moves this slot.
   bool is_set(int slot) const KNOTWAVE_RT {
-    return std::any_of(targets.begin(), targets.end(), [slot](const ChannelTargets* numbers) {
+    return std::any_of(targets.begin(), targets.end(), [slot](const SlotTargets* numbers) {
       return numbers != nullptr && numbers->is_set(slot);
     });
   }

@@ -10,7 +10,7 @@ void NoteStack::erase(int index) KNOTWAVE_RT {
   --size_;
 }
 
-void NoteStack::press(int key, int velocity) KNOTWAVE_RT {
+void NoteStack::press(int key, int velocity, std::int32_t number) KNOTWAVE_RT {
   bool sostenuto = false;
   for (int i = 0; i < size_; ++i) {
     if (entries_[static_cast<std::size_t>(i)].key != key) continue;
@@ -20,18 +20,27 @@ void NoteStack::press(int key, int velocity) KNOTWAVE_RT {
   }
   entries_[static_cast<std::size_t>(size_++)] = {static_cast<std::uint8_t>(key & 127),
                                                  static_cast<std::uint8_t>(velocity & 127), true,
-                                                 sostenuto};
+                                                 sostenuto, number};
 }
 
-bool NoteStack::lift(int key, bool sustain) KNOTWAVE_RT {
+bool NoteStack::lift(int key, bool sustain, std::int32_t number) KNOTWAVE_RT {
+  const bool is_there = number >= 0 && holds(number);
   for (int i = 0; i < size_; ++i) {
     Entry& entry = entries_[static_cast<std::size_t>(i)];
-    if (entry.key != key || !entry.key_down) continue;
+    const bool is_meant = is_there
+                              ? entry.number == number
+                              : entry.key == key && (number < 0 || entry.number == Event::kNoNote);
+    if (!is_meant || !entry.key_down) continue;
     entry.key_down = false;
     if (!sustain && !entry.sostenuto) erase(i);
     return true;
   }
   return false;
+}
+
+bool NoteStack::holds(std::int32_t number) const KNOTWAVE_RT {
+  return std::any_of(entries_.begin(), entries_.begin() + size_,
+                     [number](const Entry& entry) { return entry.number == number; });
 }
 
 void NoteStack::drop_if(bool sustain) KNOTWAVE_RT {

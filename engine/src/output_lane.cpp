@@ -50,9 +50,9 @@ std::int64_t OutputLane::most_next_bytes() const KNOTWAVE_RT {
 }
 
 void OutputLane::address(int channel, int key, std::int64_t from) KNOTWAVE_RT {
-  if (spec_.channel == channel && (spec_.key == key || spec_.kind != OutputKind::poly_pressure)) {
-    return;
-  }
+  const bool is_same =
+      spec_.channel == channel && (spec_.key == key || spec_.kind != OutputKind::poly_pressure);
+  if (is_same && has_begun_) return;
   spec_.channel = channel;
   spec_.key = key;
   extremes_ = {};
@@ -61,6 +61,7 @@ void OutputLane::address(int channel, int key, std::int64_t from) KNOTWAVE_RT {
   has_begun_ = true;
   arrived_ = not_before_ = sample_ticks(from);
   left_at_ = kNever;
+  addressed_from_ = from;
 }
 
 void OutputLane::forget(Ticks now, Ticks time, Ticks until) KNOTWAVE_RT {
@@ -152,6 +153,7 @@ void OutputLane::find_change(Ticks from, Ticks until) KNOTWAVE_RT {
 
 /// The value of then is looked at now: later it is over.
 void OutputLane::leaves_at(Ticks time) KNOTWAVE_RT {
+  if (time != left_at_) begins_not_before_ = 0;
   left_at_ = time;
   if (time == kNever) return;
   const double v = curve_.at(time);
@@ -169,7 +171,8 @@ void OutputLane::end_block(std::int64_t n) KNOTWAVE_RT {
 }
 
 Ticks OutputLane::due(const Cable& cable, const Selections& selections) const KNOTWAVE_RT {
-  return left_at_ == kNever ? kNever : left_at_ - cost(next_step_, cable, selections);
+  if (left_at_ == kNever) return kNever;
+  return std::max(left_at_ - cost(next_step_, cable, selections), begins_not_before_);
 }
 
 /// Until the next message of this lane can have come: while it runs, the shortest one that says
@@ -198,6 +201,10 @@ std::optional<OutputLane::Plan> OutputLane::plan(Ticks begin, Ticks until, const
     if (const auto owed = owed_step(reached, made.hold_end)) {
       made.step = *owed;
     } else if (begin != due_at && v >= band_low() && v <= band_high()) {
+      if (arrival < left_at_) {  // an upper half alone would be there before the value leaves
+        begins_not_before_ = left_at_ - (arrival - begin);
+        return {};
+      }
       wait_from(arrival, until);
       return {};
     }
@@ -211,6 +218,11 @@ std::optional<OutputLane::Plan> OutputLane::plan(Ticks begin, Ticks until, const
   not_before_ = std::max({not_before_, made.hold_end, left_at_ + kTicksPerSample});
   find_change(not_before_, until);
   return {};
+}
+
+void OutputLane::pass_over(Ticks until) KNOTWAVE_RT {
+  not_before_ = std::max(not_before_, left_at_ + kTicksPerSample);
+  find_change(not_before_, until);
 }
 
 /// The value is back where the receiver has it. An extreme that is owed stays so where the value is
@@ -283,8 +295,10 @@ void OutputLane::see_until(Ticks now, Ticks held_until) KNOTWAVE_RT {
 /// Adds the samples from..to to what was reached; what was sent last is held until `held_until`.
 void OutputLane::reach(Extremes& extremes, std::int64_t from_sample, std::int64_t to_sample,
                        Ticks held_until) const KNOTWAVE_RT {
-  for (std::int64_t k = from_sample; k <= to_sample; ++k) {
+  for (std::int64_t k = std::max(from_sample, addressed_from_); k <= to_sample; ++k) {
     const double v = curve_.sample(k);
+    // Well within both extremes, as nearly always: kMargin is far more than rounding.
+    if (v < extremes.high.step - 0.5 && v > extremes.low.step + 0.5) continue;
     const int high = step_reached_above(v), low = step_reached_below(v);
     const Ticks time = sample_ticks(k);
     note_extreme(extremes.high, high, 1, time, held_until);

@@ -68,6 +68,9 @@ class OutputLane {
   /// lane waits for another change.
   std::optional<Plan> plan(Ticks begin, Ticks until, const Cable& cable,
                            const Selections& selections) KNOTWAVE_RT;
+  /// The next change is looked for later than the one there is: a plan that came to nothing and
+  /// left it where it was would be made for ever.
+  void pass_over(Ticks until) KNOTWAVE_RT;
   MessageGroup messages(int step, const Selections& selections) const KNOTWAVE_RT;
   /// Its message begins.
   void begin(const Plan& plan, Ticks time, Ticks until, const Cable& cable) KNOTWAVE_RT;
@@ -112,11 +115,13 @@ class OutputLane {
   bool is_on_its_way_ = false;
   Ticks not_before_ = 0;
   Ticks left_at_ = kNever;
-  int next_step_ = 0;  ///< what it goes to then
+  int next_step_ = 0;            ///< what it goes to then
+  Ticks begins_not_before_ = 0;  ///< what is said then is shorter than next_step_
   bool has_value_ = false, has_begun_ = false;
   LaneCurve curve_;
   Extremes extremes_;
-  std::int64_t seen_ = -1;  ///< the last sample that extremes_ knows
+  std::int64_t seen_ = -1;           ///< the last sample that extremes_ knows
+  std::int64_t addressed_from_ = 0;  ///< what came before was about another channel or key
 };
 
 }  // namespace knotwave::engine

@@ -17,6 +17,9 @@ namespace {
 using base::MidiEvent;
 using base::MidiStatus;
 
+/// A controller that waits for longer goes before the next bend or pressure, so that one which runs
+/// faster than the cable does not keep it from ever being sent.
+constexpr double kPatienceSeconds = 0.01;
 constexpr int kSlack = 3;  ///< samples that a parabola reaches ahead, and one for rounding up
 
 struct Waiting {
@@ -69,13 +72,13 @@ int rank_of(OutputPriority priority) {
     case OutputPriority::note:
       return 1;
     case OutputPriority::expression:
-      return 3;
-    case OutputPriority::control:
       return 4;
+    case OutputPriority::control:
+      return 5;
   }
-  return 4;
+  return 5;
 }
-constexpr int kRestOfGroupRank = 2;
+constexpr int kRestOfGroupRank = 2, kImpatientRank = 3;
 
 bool is_control_change(const MidiEvent& event) {
   return event.status() == MidiStatus::control_change;
@@ -84,7 +87,10 @@ bool is_control_change(const MidiEvent& event) {
 }  // namespace
 
 struct OutputPort::State {
-  explicit State(const OutputPortConfig& config) : cable(config), rate_hz(config.rate_hz) {
+  explicit State(const OutputPortConfig& config)
+      : cable(config),
+        rate_hz(config.rate_hz),
+        patience(static_cast<Ticks>(kPatienceSeconds * config.rate_hz * 0x1p20)) {
     lanes.reserve(kMostLanes);
     lane_bytes.reserve(kMostLanes);
   }
@@ -103,6 +109,7 @@ struct OutputPort::State {
 
   Cable cable;
   double rate_hz;
+  Ticks patience;
   std::size_t ahead = 0;
   std::vector<OutputLane> lanes;
   std::vector<std::int64_t> lane_bytes;
@@ -113,8 +120,9 @@ struct OutputPort::State {
   // A group on its way.
   MessageGroup group;
   int group_sent = 0, group_lane = -1;
-  Ticks decided = 0;  ///< nothing is begun before the last decision
-  Ticks until = 0;    ///< values are known up to here
+  Ticks decided = 0;                  ///< nothing is begun before the last decision
+  Ticks until = 0;                    ///< values are known up to here
+  bool expression_went_last = false;  ///< of lanes and controllers
   bool must_say_again = false;
 };
 
@@ -135,6 +143,10 @@ void OutputPort::State::offer(Candidate& best, const Candidate& other,
   if (other.kind == Candidate::Kind::none || other.ready == kNever) return;
   Candidate offered = other;
   offered.ready = std::max({other.ready, now, cable.free_at()});
+  const bool is_control = other.rank == rank_of(OutputPriority::control);
+  if (is_control && expression_went_last && offered.ready - other.since >= patience) {
+    offered.rank = kImpatientRank;
+  }
   if (offered.goes_before(best)) best = offered;
 }
 
@@ -186,6 +198,9 @@ Candidate OutputPort::State::next(Ticks now) KNOTWAVE_RT {
 
 bool OutputPort::State::send(const Candidate& candidate, PortSink& sink) KNOTWAVE_RT {
   using Kind = Candidate::Kind;
+  if (candidate.rank > kRestOfGroupRank && candidate.kind != Kind::lane) {
+    expression_went_last = false;
+  }
   switch (candidate.kind) {
     case Kind::clock:
       send_posted(clocks, candidate.ready, sink);
@@ -246,8 +261,14 @@ void OutputPort::State::notice(const MidiEvent& event, Ticks time) KNOTWAVE_RT {
 
 bool OutputPort::State::send_lane(int index, Ticks time, PortSink& sink) KNOTWAVE_RT {
   OutputLane& lane = lanes[static_cast<std::size_t>(index)];
+  const Ticks left_at = lane.left_at();
   const auto plan = lane.plan(time, until, cable, selections);
-  if (!plan) return false;
+  if (!plan) {
+    const bool is_later = lane.left_at() != left_at || lane.due(cable, selections) > time;
+    if (!is_later) lane.pass_over(until);
+    return false;
+  }
+  expression_went_last = lane.is_expression();
   const MessageGroup said = lane.messages(plan->step, selections);
   lane.begin(*plan, time, until, cable);
   if (lane.spec().kind == OutputKind::nrpn) {

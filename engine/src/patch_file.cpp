@@ -120,14 +120,26 @@ Result<EnvelopePatchSpec> parse_envelope_patch(std::string_view text,
   return parse_envelope_text(text, source, shelf);
 }
 
-Result<EnvelopePatchSpec> read_envelope_patch(const std::string& path) {
-  FileShelf shelf;
+namespace {
+
+Result<EnvelopePatchSpec> read_envelope_patch_from(const std::string& path, FileShelf shelf) {
   const FileShelf::Link link(shelf, path);
   const auto text = shelf.read_first(path);
   if (!text) return text.error();
   auto spec = parse_envelope_text(*text, path, shelf);
   if (spec) spec->texts = std::move(shelf.texts());
   return spec;
+}
+
+}  // namespace
+
+Result<EnvelopePatchSpec> read_envelope_patch(const std::string& path) {
+  return read_envelope_patch_from(path, FileShelf());
+}
+
+Result<EnvelopePatchSpec> read_envelope_patch(const std::string& path,
+                                              std::span<const FileText> texts) {
+  return read_envelope_patch_from(path, FileShelf(texts));
 }
 
 }  // namespace knotwave::engine

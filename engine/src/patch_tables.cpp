@@ -8,6 +8,8 @@
 #include "knotwave/curves/algorithms.h"
 #include "knotwave/dsp/builtin_waves.h"
 
+#include "text_line.h"
+
 namespace knotwave::engine {
 namespace {
 
@@ -64,8 +66,8 @@ void PatchTables::read_common(TableReader& top) {
        {"format", "kind", "curves", "surfaces", "envelopes", "lfos", "maps"}) {
     top.node(section);
   }
-  patch_.name = top.string("name", "");
-  patch_.about = top.string("about", "");
+  patch_.name = read_text_line(top, "name");
+  patch_.about = read_text_line(top, "about");
   patch_.mode = static_cast<PlayMode>(
       top.choice("mode", static_cast<int>(patch_.mode), {"poly", "mono", "legato"}));
   patch_.priority = static_cast<NotePriority>(top.choice("priority", 0, {"last", "low", "high"}));

@@ -161,6 +161,7 @@ std::vector<TargetChoice> target_choices(const PatchSpec& patch) {
 int number_after(std::string_view prefix, std::string_view word) {
   if (!word.starts_with(prefix)) return -1;
   word.remove_prefix(prefix.size());
+  if (word.size() > 1 && word.front() == '0') return -1;  // one way to write each
   int number = -1;
   const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), number);
   const bool whole = status == std::errc{} && end == word.data() + word.size();

@@ -17,12 +17,14 @@ Performance::Performance(const EngineConfig& config)
     : config_(config),
       slots_(config.max_voices),
       voices_(2 * static_cast<std::size_t>(config.max_voices)),
+      note_targets_(voices_.size()),
+      ended_notes_(2 * voices_.size()),
       release_times_(voices_.size()) {}
 
 void Performance::reset(const BankProgram* bank) KNOTWAVE_RT {
   bank_ = bank;
   for (ChannelState& channel : channels_) channel.reset();
-  for (ChannelTargets& targets : targets_) targets.reset(config_.rate_hz);
+  for (SlotTargets& targets : targets_) targets.reset(config_.rate_hz);
   every_channel_.reset(config_.rate_hz);
   zones_.reset();
   for (Mono& mono : monos_) {
@@ -37,6 +39,7 @@ void Performance::reset(const BankProgram* bank) KNOTWAVE_RT {
   tempo_.reset(config_.rate_hz);
   master_gain_ = 1;
   next_note_ = 0;
+  ended_count_ = 0;
   next_group_ = kNever;
   next_group_start_ = 0;
   slots_.clear();
@@ -50,6 +53,7 @@ Performance::Reach Performance::reach_of(const Event& event) const KNOTWAVE_RT {
   if (event.kind == Event::Kind::set_target) {
     return {event.every_channel ? Voices::all : Voices::channel, false, channel, 0};
   }
+  if (event.kind == Event::Kind::set_note) return {};  // it brings those it changes
   if (event.kind != Event::Kind::midi) return everything;
   switch (event.midi.status()) {
     case base::MidiStatus::note_on: {
@@ -81,6 +85,7 @@ Performance::Reach Performance::reach_of(const Event& event) const KNOTWAVE_RT {
 void Performance::handle(const Event& event, base::SampleTime time,
                          VoiceUpkeep& upkeep) KNOTWAVE_RT {
   upkeep_ = &upkeep;
+  number_ = std::max(event.note, Event::kNoNote);
   switch (event.kind) {
     case Event::Kind::midi:
       handle_midi(event.midi, time);
@@ -97,6 +102,9 @@ void Performance::handle(const Event& event, base::SampleTime time,
     case Event::Kind::set_target:
       set_target(event, time);
       break;
+    case Event::Kind::set_note:
+      set_note(event, time);
+      break;
     case Event::Kind::position:
       tempo_.set_position(time, static_cast<double>(event.song_clocks) / kSongClocksPerQuarter);
       break;
@@ -104,9 +112,9 @@ void Performance::handle(const Event& event, base::SampleTime time,
 }
 
 void Performance::set_target(const Event& event, base::SampleTime time) KNOTWAVE_RT {
-  ChannelTargets& targets = event.every_channel
-                                ? every_channel_
-                                : targets_[static_cast<std::size_t>(event.midi.channel())];
+  SlotTargets& targets = event.every_channel
+                             ? every_channel_
+                             : targets_[static_cast<std::size_t>(event.midi.channel())];
   const std::int64_t sample = base::first_sample(time);
   targets.forget_rested(sample);
   if (event.slot < kSlotCount) {
@@ -230,7 +238,7 @@ void Performance::handle_system(const base::MidiEvent& midi, base::SampleTime ti
 void Performance::reset_system(base::SampleTime time) KNOTWAVE_RT {
   for (int channel = 0; channel < kChannels; ++channel) silence(channel, time);
   for (ChannelState& channel : channels_) channel.reset();
-  for (ChannelTargets& targets : targets_) targets.go_back(base::first_sample(time));
+  for (SlotTargets& targets : targets_) targets.go_back(base::first_sample(time));
   zones_.reset();
   sustain_was_on_.fill(false);
   sostenuto_was_on_.fill(false);
@@ -366,7 +374,9 @@ void Performance::collect(int index) KNOTWAVE_RT {
   VoiceSlot& slot = slots_.at(index);
   slot.level = voice(index).level();
   counters_.joins_limited += voice(index).take_limited_joins();
-  if (voice(index).is_done()) slot.state = VoiceSlot::State::free;
+  if (!voice(index).is_done()) return;
+  slot.state = VoiceSlot::State::free;
+  end_number(slot.channel, slot.key, slot.number);
 }
 
 }  // namespace knotwave::engine

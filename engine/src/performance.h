@@ -15,7 +15,7 @@
 #include "knotwave/engine/mpe.h"
 #include "knotwave/engine/note_stack.h"
 
-#include "channel_targets.h"
+#include "slot_targets.h"
 #include "tempo_clock.h"
 #include "voice.h"
 #include "voice_slots.h"
@@ -34,6 +34,12 @@ class VoiceUpkeep {
 
  protected:
   ~VoiceUpkeep() = default;
+};
+
+/// What set_note events said of a voice's note.
+struct NoteTargets {
+  static constexpr int kMostSlots = 16;  ///< of modulation; as many of expression
+  SlotTargets modulation{kMostSlots}, expression{kMostSlots};
 };
 
 class Performance {
@@ -80,6 +86,12 @@ class Performance {
   Voice& voice(int index) KNOTWAVE_RT { return voices_[static_cast<std::size_t>(index)]; }
   EngineCounters& counters() KNOTWAVE_RT { return counters_; }
   const EngineCounters& counters() const KNOTWAVE_RT { return counters_; }
+
+  /// Numbered notes that were heard to their end since forget_ended_notes().
+  std::span<const EndedNote> ended_notes() const KNOTWAVE_RT {
+    return std::span(ended_notes_).first(ended_count_);
+  }
+  void forget_ended_notes() KNOTWAVE_RT { ended_count_ = 0; }
 
   Engine::Newest newest(std::int64_t sample) const KNOTWAVE_RT;
   /// Frees voices that are done and counts the rest. Called when all are rendered up to a sample.
@@ -138,6 +150,15 @@ class Performance {
   Voice& brought(int index) KNOTWAVE_RT;
   int victim(int bus, const PatchProgram* patch) KNOTWAVE_RT;
 
+  // performance_numbered.cpp: notes that the player numbers
+  void set_note(const Event& event, base::SampleTime time) KNOTWAVE_RT;
+  void set_note(int index, const Event& event, std::int64_t sample) KNOTWAVE_RT;
+  void end_number(int channel, int key, std::int32_t number) KNOTWAVE_RT;
+  /// A mono voice goes on with another note: what was said of the one before glides back.
+  void renumber(int index, NoteContext& note, std::int64_t sample) KNOTWAVE_RT;
+  /// The note of the voice at `index` reads its own targets.
+  void own_targets(int index, NoteContext& note) const KNOTWAVE_RT;
+
   // performance_install.cpp: a new bank under sounding notes
   void install(const BankProgram* bank, base::SampleTime time) KNOTWAVE_RT;
   bool is_left_behind(const VoiceSlot& slot) const KNOTWAVE_RT;
@@ -158,8 +179,8 @@ class Performance {
   const EngineConfig config_;
   const BankProgram* bank_ = nullptr;
   std::array<ChannelState, kChannels> channels_;
-  std::array<ChannelTargets, kChannels> targets_;
-  ChannelTargets every_channel_;
+  std::array<SlotTargets, kChannels> targets_;
+  SlotTargets every_channel_;
   MpeZones zones_;
   std::array<Mono, kChannels> monos_;
   std::array<bool, kChannels> sustain_was_on_{}, sostenuto_was_on_{};
@@ -171,9 +192,13 @@ class Performance {
   std::array<int, kChannels> mono_spans_{};  ///< channels that a CC 126 on each made mono
   TempoClock tempo_;
   double master_gain_ = 1;
+  std::int32_t number_ = Event::kNoNote;  ///< of the event being handled
   std::uint64_t next_note_ = 0;
   VoiceSlots slots_;
   std::vector<Voice> voices_;
+  std::vector<NoteTargets> note_targets_;  ///< [places]
+  std::vector<EndedNote> ended_notes_;
+  std::size_t ended_count_ = 0;
   std::vector<base::SampleTime> release_times_;  ///< when each voice's gate closed
   EngineCounters counters_;
   int group_ = 0;                      ///< how many notes go over at a time

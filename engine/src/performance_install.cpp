@@ -97,6 +97,9 @@ void Performance::carry_over(int index, base::SampleTime time) KNOTWAVE_RT {
   slot.bank = bank_;
   slot.choke_group = choice.choke_group;
   slot.is_mono = was_mono && play_mode(old.channel, choice) != PlayMode::poly;
+  note_targets_[static_cast<std::size_t>(fresh)] = note_targets_[static_cast<std::size_t>(index)];
+  own_targets(fresh, start.note);
+  slots_.at(index).number = Event::kNoNote;  // it goes on
   voice(fresh).start(start, tempo_);
   upkeep_->add(fresh);
   voice(fresh).fade_in(base::first_sample(time), kInstallFadeSeconds);

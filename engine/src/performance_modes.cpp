@@ -81,8 +81,9 @@ bool Performance::tie_to_source(int channel, int key, int velocity,
   slot.pedal_held = false;
   const double seconds = portamento(channel, choice, key, source, true).seconds;
   const auto number = static_cast<std::uint32_t>(slot.age);
-  brought(tied).play(context(channel, key, velocity, choice, number), time, false, {seconds, {}},
-                     tempo_);
+  NoteContext note = context(channel, key, velocity, choice, number);
+  renumber(tied, note, base::first_sample(time));
+  brought(tied).play(note, time, false, {seconds, {}}, tempo_);
   last_pitch_[static_cast<std::size_t>(channel)] = {true, voice(tied).pitch_target()};
   return true;
 }

@@ -48,11 +48,15 @@ void Performance::count_missing(const MissingPatch& missing) KNOTWAVE_RT {
 
 void Performance::note_off(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT {
   Mono& mono = monos_[static_cast<std::size_t>(channel)];
-  if (mono.stack.lift(key, sustains(channel))) {
+  if (mono.stack.lift(key, sustains(channel), number_)) {
+    if (!mono_sounds(mono, channel) || slots_.at(mono.slot).number != number_) {
+      end_number(channel, key, number_);
+    }
     settle_mono(channel, time, velocity);
     return;
   }
-  const int index = slots_.oldest_down(channel, key);
+  const int index =
+      number_ < 0 ? slots_.oldest_down(channel, key) : slots_.down(number_, channel, key);
   if (index < 0) return;
   VoiceSlot& slot = slots_.at(index);
   slot.key_down = false;
@@ -100,6 +104,7 @@ NoteContext Performance::context(int channel, int key, int velocity,
   note.note = choice.note;
   note.key = key;
   note.velocity = velocity;
+  note.number = number_;
   note.random = {choice.patch->spec().seed ^ config_.seed, number, base::kRandomMap};
   return note;
 }
@@ -133,9 +138,13 @@ int Performance::begin(int channel, const NoteContext& note, const BankProgram::
   slot.patch = choice.patch;
   slot.bank = bank_;
   slot.age = next_note_;
+  slot.number = note.number;
+  note_targets_[static_cast<std::size_t>(index)].modulation.reset(config_.rate_hz);
+  note_targets_[static_cast<std::size_t>(index)].expression.reset(config_.rate_hz);
   Voice::Start start;
   start.patch = choice.patch;
   start.note = note;
+  own_targets(index, start.note);
   start.time = time;
   start.gain_lin = choice.gain_lin * bank_->gain_lin();
   start.rate_hz = config_.rate_hz;
@@ -182,12 +191,12 @@ void Performance::play_mono(int channel, int key, int velocity, const BankProgra
   mono.patch = choice.patch;
   mono.mode = play_mode(channel, choice);
   mono.is_drum = choice.drum;
-  mono.stack.press(key, velocity);
+  mono.stack.press(key, velocity, number_);
   const NoteStack::Entry* chosen = mono.stack.choose(choice.patch->spec().priority);
   const bool sounds = mono_sounds(mono, channel);
   if (sounds && chosen->key != key) return;  // an older key has priority
   const auto number = static_cast<std::uint32_t>(next_note_++);
-  const NoteContext note = context(channel, key, velocity, choice, number);
+  NoteContext note = context(channel, key, velocity, choice, number);
   if (!sounds) {
     mono.slot = begin(channel, note, choice, time,
                       portamento(channel, choice, key, source, mono.mode == PlayMode::mono));
@@ -202,6 +211,7 @@ void Performance::play_mono(int channel, int key, int velocity, const BankProgra
       portamento(channel, choice, key, source, !joins || mono.mode == PlayMode::mono);
   slot.key = key;
   slot.key_down = true;
+  renumber(mono.slot, note, base::first_sample(time));
   brought(mono.slot).play(note, time, joins, is_source ? Portamento{path.seconds, {}} : path,
                           tempo_);
   last_pitch_[static_cast<std::size_t>(channel)] = {true, voice(mono.slot).pitch_target()};
@@ -224,7 +234,9 @@ void Performance::settle_mono(int channel, base::SampleTime time,
   note.note += chosen->key - slot.key;
   note.key = chosen->key;
   note.velocity = chosen->velocity;
+  note.number = chosen->number;
   slot.key = chosen->key;
+  renumber(mono.slot, note, base::first_sample(time));
   brought(mono.slot).play(note, time, mono.mode == PlayMode::mono,
                           portamento(channel, *mono.patch, mono.is_drum, true), tempo_);
   last_pitch_[static_cast<std::size_t>(channel)] = {true, voice(mono.slot).pitch_target()};

@@ -32,11 +32,12 @@ inline constexpr double kSoftPedalDb = -5;
 /// What one chunk is worked out in; one a thread.
 struct VoiceScratch {
   ModulationScratch modulation;
-  ChunkBuffer glide, bend, pitch, source_pitch, gain, amp, work, pan, fade_a, fade_b;
+  ChunkBuffer glide{}, bend{}, pitch{}, source_pitch{}, gain{}, amp{}, work{}, pan{}, fade_a{},
+      fade_b{};
   Signal fade_gain_a, fade_gain_b;  ///< of the two crossfaded sources
-  std::array<float, kChunk> mix_left, mix_right, source_left, source_right;
-  std::array<float, kChunk> control_a, control_b, gain_left, gain_right;
-  std::array<base::Phase, kChunk> increments;
+  std::array<float, kChunk> mix_left{}, mix_right{}, source_left{}, source_right{};
+  std::array<float, kChunk> control_a{}, control_b{}, gain_left{}, gain_right{};
+  std::array<base::Phase, kChunk> increments{};
 };
 
 /// How a voice comes to the pitch of a new note.
@@ -67,6 +68,8 @@ class Voice {
   /// Silent `seconds` after `sample`, whatever the envelopes do. [audio]
   void fade_out(std::int64_t sample, double seconds) KNOTWAVE_RT;
   void fade_in(std::int64_t sample, double seconds) KNOTWAVE_RT;
+  /// The note's own numbers and sources, by set_note events. [audio]
+  NoteContext& note() KNOTWAVE_RT { return start_.note; }
   /// Reads the player's controllers no more: the channel belongs to another note now. [audio]
   void detach() KNOTWAVE_RT { detached_ = true; }
 

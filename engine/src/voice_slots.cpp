@@ -49,6 +49,17 @@ bool VoiceSlots::is_playing(const BankProgram* bank) const KNOTWAVE_RT {
   });
 }
 
+template <class Meant>
+int VoiceSlots::oldest(Meant is_meant) const KNOTWAVE_RT {
+  int best = -1;
+  for (int i = 0; i < static_cast<int>(slots_.size()); ++i) {
+    const VoiceSlot& slot = at(i);
+    if (!slot.is_sounding() || slot.is_mono || !slot.key_down || !is_meant(slot)) continue;
+    if (best < 0 || slot.age < at(best).age) best = i;
+  }
+  return best;
+}
+
 int VoiceSlots::victim(int bus, const PatchProgram* patch) const KNOTWAVE_RT {
   int best = -1;
   for (int i = 0; i < static_cast<int>(slots_.size()); ++i) {
@@ -61,14 +72,15 @@ int VoiceSlots::victim(int bus, const PatchProgram* patch) const KNOTWAVE_RT {
 }
 
 int VoiceSlots::oldest_down(int channel, int key) const KNOTWAVE_RT {
-  int best = -1;
-  for (int i = 0; i < static_cast<int>(slots_.size()); ++i) {
-    const VoiceSlot& slot = at(i);
-    if (!slot.is_sounding() || slot.is_mono || !slot.key_down) continue;
-    if (slot.channel != channel || slot.key != key) continue;
-    if (best < 0 || slot.age < at(best).age) best = i;
-  }
-  return best;
+  return oldest([&](const VoiceSlot& slot) { return slot.channel == channel && slot.key == key; });
+}
+
+int VoiceSlots::down(std::int32_t number, int channel, int key) const KNOTWAVE_RT {
+  const int numbered = oldest([&](const VoiceSlot& slot) { return slot.number == number; });
+  if (numbered >= 0) return numbered;
+  return oldest([&](const VoiceSlot& slot) {
+    return slot.number == Event::kNoNote && slot.channel == channel && slot.key == key;
+  });
 }
 
 }  // namespace knotwave::engine

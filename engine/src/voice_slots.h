@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "knotwave/base/rt.h"
+#include "knotwave/engine/event.h"
 
 namespace knotwave::engine {
 
@@ -24,6 +25,7 @@ struct VoiceSlot {
   int bus = 0;  ///< the channel it is mixed into: the zone's master under MPE
   int key = 0;
   int choke_group = 0;
+  std::int32_t number = Event::kNoNote;  ///< the player's own of the note
   const PatchProgram* patch = nullptr;
   const BankProgram* bank = nullptr;
   std::uint64_t age = 0;  ///< number of its note: smaller is older
@@ -65,8 +67,13 @@ class VoiceSlots {
   /// The oldest voice of a key that is down: a note-off belongs to the first note-on not yet
   /// answered. -1 when there is none. Mono voices are not meant.
   int oldest_down(int channel, int key) const KNOTWAVE_RT;
+  /// The same of a numbered note; where there is none, of a note of that key without a number.
+  int down(std::int32_t number, int channel, int key) const KNOTWAVE_RT;
 
  private:
+  template <class Meant>
+  int oldest(Meant is_meant) const KNOTWAVE_RT;
+
   int max_voices_;
   std::vector<VoiceSlot> slots_;
 };

@@ -153,6 +153,11 @@ void VoltageOutput::ramp_out(std::int64_t sample) KNOTWAVE_RT {
   ramp_out_from_ = sample;
 }
 
+void VoltageOutput::begin_again() {
+  has_begun_ = is_ramping_out_ = false;
+  high_pass_ = last_in_ = 0;
+}
+
 bool VoltageOutput::is_silent(std::int64_t sample) const KNOTWAVE_RT {
   const bool is_still = is_direct_ || std::abs(high_pass_) < 0x1p-24;
   return is_ramping_out_ && sample >= ramp_out_from_ + ramp_samples_ && is_still;

@@ -70,6 +70,7 @@ class RtMidiInputs : public MidiInputs {
     const std::int64_t now_ns = steady_clock_ns();
     bool has_changed = false;
     too_many_.clear();
+    left_out_.clear();
     for (MidiApi& api : apis_) {
       if (api.has_gone()) {
         for (Slot& slot : slots_) {
@@ -112,6 +113,9 @@ class RtMidiInputs : public MidiInputs {
       all.push_back("'" + name + "' is left out: " + std::to_string(kMaxMidiPorts) +
                     " inputs are open, which is the most");
     }
+    for (const std::string& name : left_out_) {
+      all.push_back("'" + name + "' is left out: it is heard where it is asked for by name");
+    }
     return all;
   }
 
@@ -150,11 +154,16 @@ class RtMidiInputs : public MidiInputs {
       return std::any_of(config_.ports.begin(), config_.ports.end(),
                          [&](const std::string& part) { return has_part(name, part); });
     }
+    if (is_left_out(name)) return false;
     // Each keyboard once: where ALSA works, what JACK shows of it is left to ALSA.
     const bool has_alsa = std::any_of(apis_.begin(), apis_.end(), [](const MidiApi& other) {
       return other.name() == "alsa" && other.works();
     });
     return !(is_jack(api.name()) && has_alsa && is_alsa_seen_by_jack(name));
+  }
+
+  bool is_left_out(const std::string& name) const {
+    return config_.ports.empty() && !config_.left_out.empty() && has_part(name, config_.left_out);
   }
 
   /// The key of the open port of that very name; empty: none.
@@ -166,10 +175,11 @@ class RtMidiInputs : public MidiInputs {
   }
 
   /// Of two keyboards of one make the second is "#2", and stays it when the first is unplugged.
-  std::vector<Source> wanted(MidiApi& api) const {
+  std::vector<Source> wanted(MidiApi& api) {
     std::vector<Source> all;
     for (const std::string& name : api.sources()) {
       if (is_wanted(api, name)) all.push_back({open_key(api, name), name});
+      if (is_left_out(name) && !OwnOutput::has(api.name(), name)) left_out_.push_back(name);
     }
     const auto is_taken = [&](const std::string& key) {
       return std::any_of(all.begin(), all.end(),
@@ -289,7 +299,7 @@ class RtMidiInputs : public MidiInputs {
   MidiListener& listener_;
   std::vector<MidiApi> apis_;
   std::vector<Slot> slots_ = reserved();
-  std::vector<std::string> too_many_;
+  std::vector<std::string> too_many_, left_out_;
 
   static std::vector<Slot> reserved() {
     std::vector<Slot> slots;

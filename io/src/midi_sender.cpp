@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -13,15 +12,16 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/prctl.h>
-#include <time.h>
 
 #include "knotwave/io/audio_device.h"
 #include "knotwave/io/midi_queue.h"
+#include "knotwave/io/sleeper.h"
 
 namespace knotwave::io {
 namespace {
 
 constexpr std::int64_t kTryAgainNs = 500'000'000;
+constexpr std::int64_t kLongestSleepNs = 100'000'000;
 constexpr std::chrono::milliseconds kThreadEndsWithin{150};
 constexpr int kPriority = 20;        // above JACK's own threads by default, 5 to 10
 constexpr int kMostInOneTurn = 256;  // of a port, before the next one has its turn
@@ -47,23 +47,15 @@ struct Port {
   std::int64_t reopened = 0, next_try_ns = 0;
 };
 
-void sleep_until(std::int64_t time_ns) {
-  timespec until{};
-  until.tv_sec = static_cast<time_t>(time_ns / 1'000'000'000);
-  until.tv_nsec = static_cast<long>(time_ns % 1'000'000'000);
-  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
-  }
-}
-
-/// Sends what is due. Returns when to come again.
-std::int64_t serve(Port& port) {
+/// Sends what is due. Returns when to come again, `idle_ns` where nothing waits.
+std::int64_t serve(Port& port, std::int64_t idle_ns) {
   const std::lock_guard lock(port.mutex);
   MidiOutput* const output = port.output.get();
   const bool is_timed = output != nullptr && output->is_timed();
   for (int i = 0; i < kMostInOneTurn; ++i) {
     const MidiQueue::Message* const message = port.queue.front();
     const std::int64_t now_ns = steady_clock_ns();
-    if (message == nullptr) return now_ns + MidiSender::kWakeNs;
+    if (message == nullptr) return idle_ns;
     if (!is_timed && message->due_ns > now_ns) return message->due_ns;
     bool is_sent = false;
     if (is_timed) {
@@ -86,6 +78,8 @@ std::int64_t serve(Port& port) {
 struct MidiSender::State {
   std::function<Result<std::unique_ptr<MidiOutput>>(const MidiOutputConfig&)> open;
   std::vector<std::unique_ptr<Port>> ports;
+  bool is_woken = false;
+  Sleeper sleeper;
   std::thread thread;
   std::atomic<bool> must_end{false};
   std::mutex mutex;
@@ -117,9 +111,10 @@ void MidiSender::State::run() {
     changed.notify_all();
   }
   while (!must_end.load(std::memory_order_relaxed)) {
-    std::int64_t next_ns = steady_clock_ns() + kWakeNs;
-    for (const auto& port : ports) next_ns = std::min(next_ns, serve(*port));
-    sleep_until(next_ns);
+    const std::int64_t idle_ns = steady_clock_ns() + (is_woken ? kLongestSleepNs : kWakeNs);
+    std::int64_t next_ns = idle_ns;
+    for (const auto& port : ports) next_ns = std::min(next_ns, serve(*port, idle_ns));
+    sleeper.sleep_until(next_ns);
   }
   const std::lock_guard lock(mutex);
   has_ended = true;
@@ -146,6 +141,7 @@ MidiSender::MidiSender(std::shared_ptr<State> state) : state_(std::move(state)) 
 Result<std::unique_ptr<MidiSender>> MidiSender::open(MidiSenderConfig config) {
   auto state = std::make_shared<State>();
   state->open = config.open;
+  state->is_woken = config.is_woken;
   for (MidiOutputConfig& port : config.ports) {
     state->ports.push_back(std::make_unique<Port>(std::move(port), config));
     if (const auto opened = state->try_open(*state->ports.back()); !opened) return opened.error();
@@ -162,6 +158,7 @@ Result<std::unique_ptr<MidiSender>> MidiSender::open(MidiSenderConfig config) {
 
 MidiSender::~MidiSender() {
   state_->must_end = true;
+  wake();
   std::unique_lock lock(state_->mutex);
   const bool has_ended =
       state_->changed.wait_for(lock, kThreadEndsWithin, [this] { return state_->has_ended; });
@@ -180,6 +177,8 @@ bool MidiSender::push(int port, const base::MidiEvent& event, std::int64_t due_n
   to.dropped.fetch_add(1, std::memory_order_relaxed);
   return false;
 }
+
+void MidiSender::wake() noexcept { state_->sleeper.wake(); }
 
 // All that has gone is closed first: while a client of a dead server is open, none can be opened.
 bool MidiSender::poll() {

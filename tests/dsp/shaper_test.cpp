@@ -248,6 +248,36 @@ TEST(Shaper, BlockSizeDoesNotMatter) {
   });
 }
 
+TEST(Shaper, ABlendOfOneCurveIsThatCurveToTheBit) {
+  const auto program = ShaperProgram::create(reference_curve()).value();
+  std::mt19937_64 random(knotwave::support::test_seed());
+  std::uniform_real_distribution<float> unit(-1.2f, 1.2f);
+  std::vector<float> in(300), drive(300), plain(300), blended(300);
+  for (std::size_t i = 0; i < in.size(); ++i) in[i] = unit(random), drive[i] = 1 + unit(random);
+  in[100] = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<double> nothing(300, 0), all(300, 1), mix(300, 0.75);
+  Shaper one, two;
+  one.render(program, drive, 0.75f, in, plain);
+  const auto fold_program = ShaperProgram::create(fold()).value();
+  const knotwave::dsp::ShaperLayer layers[] = {{&fold_program, nothing}, {&program, all}};
+  two.render(layers, {drive, nothing, nothing, mix}, in, blended);
+  EXPECT_EQ(plain, blended);
+}
+
+TEST(Shaper, ABlendTakesAwayWhatItIsWithoutInput) {
+  const auto program = ShaperProgram::create(reference_curve()).value();
+  const std::vector<double> none(50, 0), all(50, 1), half(50, 0.5), bias(50, 0.25);
+  const std::vector<float> silence(50), drive(50, 1);
+  std::vector<float> out(50);
+  const knotwave::dsp::ShaperLayer layers[] = {{&program, half}, {&program, half}};
+  Shaper shaper;
+  shaper.reset(0.25);
+  shaper.render(layers, {drive, bias, all, all}, silence, out);
+  EXPECT_EQ(out, std::vector<float>(50, 0));
+  shaper.render(layers, {drive, bias, none, all}, silence, out);
+  for (const float y : out) EXPECT_EQ(y, static_cast<float>(program.at(0.25)));
+}
+
 TEST(Shaper, WorksInPlaceAndDoesNotAllocate) {
   const auto program = ShaperProgram::create(fold()).value();
   std::vector<float> in(200);

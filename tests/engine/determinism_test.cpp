@@ -82,6 +82,22 @@ std::vector<Event> crowded_journal(std::uint64_t seed, int count, std::int64_t f
     } else if (kind == 15) {
       event = of_kind(sample, Event::Kind::install_bank);
       event.bank = draw(4, 2) == 0 ? &one : &two;
+    } else if (kind < 24) {
+      event = of_kind(sample, Event::Kind::set_note);
+      event.midi.bytes[0] = static_cast<std::uint8_t>(channel);
+      constexpr int kKeys[] = {40, 47, 60, Event::kEveryKey};
+      event.midi.bytes[1] = static_cast<std::uint8_t>(kKeys[draw(4, 4)]);
+      event.note = draw(5, 2) == 0 ? draw(6, 200) : Event::kNoNote;
+      event.every_channel = draw(5, 8) == 1;
+      event.is_expression = draw(7, 2) == 0;
+      event.slot = static_cast<std::uint16_t>(draw(6, kSlotCount));
+      if (kind == 16) event.slot = Event::kNotePressure;
+      if (kind == 17) event.slot = Event::kNoteTimbre;
+      event.number = draw(7, 1000) / 500.0 - 1;
+    }
+    if (kind >= 24 && kind < 32) {
+      event = midi(sample, (kind < 29 ? 0x90 : 0x80) | channel, 36 + draw(4, 48), 1 + draw(5, 127));
+      event.note = draw(6, 200);
     }
     events.push_back(event);
   }

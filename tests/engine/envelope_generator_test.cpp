@@ -420,6 +420,88 @@ TEST(EnvelopeGenerator, OnAChannelOfItsOwnTheFirstValueIsThereWithItsNote) {
   EXPECT_NEAR(first_value_s.begin()->second, 0.1, 1e-6);
 }
 
+/// Values of a controller in the order in which they went out, and where among them the note was.
+struct AroundNote {
+  std::vector<int> values;
+  std::size_t values_before_note = 0;
+};
+AroundNote around_note(const std::vector<Told>& messages, int control) {
+  AroundNote around;
+  for (const Told& told : messages) {
+    if (told.event.status() == base::MidiStatus::note_on) {
+      around.values_before_note = around.values.size();
+    }
+    if (told.event.status() == base::MidiStatus::control_change && told.event.bytes[1] == control) {
+      around.values.push_back(told.event.bytes[2]);
+    }
+  }
+  return around;
+}
+
+TEST(EnvelopeGenerator, OnTheNotesOwnChannelNoRestValueComesBetweenTheNoteAndItsCurve) {
+  for (const std::string wire : {"din", "usb", "none"}) {
+    for (const std::string mode : {"mono", "poly"}) {
+      SCOPED_TRACE(wire + " " + mode);
+      Rig rig({"mode = '" + mode + "'\nnotes = 'thru'\n" +
+               ramp_to("to = 'cc74'\nrange = [10, 50]\nrest = 64\nchannel = 'note'\n", 0.5, "",
+                       "[ports.synth]\nwire = '" + wire + "'\n")});
+      rig.play({{4800, 0x90, 60, 100}}, 48000);
+      const AroundNote around = around_note(rig.kept.messages, 74);
+      ASSERT_FALSE(around.values.empty());
+      EXPECT_LE(around.values_before_note, 1u);
+      EXPECT_EQ(around.values.front(), 10);
+      EXPECT_TRUE(std::is_sorted(around.values.begin(), around.values.end()))
+          << testing::PrintToString(around.values);
+      EXPECT_EQ(around.values.back(), 50);
+    }
+  }
+}
+
+TEST(EnvelopeGenerator, ANoteDoesNotHearWhatItsVoiceDidOnAnotherChannel) {
+  Rig rig({"mode = 'poly'\npolyphony = 1\nnotes = 'thru'\n" + kDin +
+           "[curves.fall]\ndegree = 1\npoints = [1, 0.5]\n"
+           "[envelopes.fall]\ncurve = 'fall'\nseconds = 0.5\nvelocity_time = 0\n"
+           "[[maps]]\nfrom = ['fall', 'velocity']\nsurface = 'product'\nto = 'free.x'\n"
+           "[surfaces.product]\ndegree_u = 1\ndegree_v = 1\npoints = [[0, 0], [0, 1]]\n"
+           "[[outputs]]\nfrom = 'free.x'\nto = 'cc74'\nchannel = 'note'\n"});
+  rig.play({{4800, 0x90, 60, 127}, {9600, 0x91, 62, 40}}, 48000);
+  int most = 0;
+  for (const Told& told : rig.kept.messages) {
+    if (told.event.bytes[0] == 0xB1) most = std::max(most, int{told.event.bytes[2]});
+  }
+  EXPECT_EQ(most, 40) << "the first note's 127 belongs to channel 1";
+}
+
+TEST(EnvelopeGenerator, WhileItIsStillNothingIsSent) {
+  const std::string nrpn = ramp_to(
+      "to = 'nrpn5'\n[[outputs]]\nfrom = 'climb'\nto = 'osc'\n"
+      "address = '/x'\nrate_hz = 10\n"
+      "[[events]]\nenvelope = 'climb'\nnote = 40\nseconds = 0.9\n",
+      0.1);
+  Rig rig({nrpn});
+  EXPECT_FALSE(rig.generator->is_still()) << "rest values have not been sent";
+  rig.play({}, 96000);
+  EXPECT_TRUE(rig.generator->is_still());
+  rig.generator->handle(Rig::event_of({96000, 0x90, 60, 100}));
+  EXPECT_FALSE(rig.generator->is_still());
+  rig.play({{96480, 0x80, 60, 0}}, 97000);
+  EXPECT_FALSE(rig.generator->is_still());
+  int stills = 0;
+  for (std::int64_t end = 97000; end < 240000; end += 64) {
+    const bool is_still = rig.generator->is_still();
+    const std::size_t sent = rig.kept.messages.size() + rig.kept.numbers.size();
+    rig.play({}, end);
+    if (!is_still) continue;
+    ++stills;
+    ASSERT_EQ(rig.kept.messages.size() + rig.kept.numbers.size(), sent) << end;
+  }
+  EXPECT_GT(stills, 1000);
+  EXPECT_TRUE(rig.kept.messages.back().is(0x80, 40, 64)) << "0.9 s after the end of the envelope";
+  Rig moving({"[lfos.l]\ncurve = 'sine'\n[[outputs]]\nfrom = 'l'\nof = [-1, 1]\nto = 'cc1'\n"});
+  moving.play({{480, 0x90, 60, 100}, {960, 0x80, 60, 0}}, 96000);
+  EXPECT_FALSE(moving.generator->is_still());
+}
+
 TEST(EnvelopeGenerator, OscHasItsRateAtMostAndTheLastValueAlways) {
   Rig rig({ramp_to("to = 'osc'\naddress = '/filter/cutoff'\nrange = [20, 2000]\nrate_hz = 100\n",
                    0.5, "", "")});
@@ -473,6 +555,63 @@ TEST(EnvelopeGenerator, WhatCannotGoTogetherIsRefused) {
   for (const auto& wrong : {EnvelopeGeneratorConfig{.rate_hz = 1}, {.bpm = 0}, {.lead_s = 1}}) {
     EXPECT_NE(error(cc74, ramp_to("to = 'cc75'\n", 0.1), wrong), "none");
   }
+}
+
+/// What is said of two patches together: "none" where they go together.
+std::string fault_of(const std::string& a, const std::string& b) {
+  const auto one = envelope_program("name = 'One'\n" + a),
+             two = envelope_program("name = 'Two'\n" + b);
+  const EnvelopePatchProgram* all[] = {one.get(), two.get()};
+  const auto made = EnvelopeGenerator::create({}, all);
+  return made ? std::string("none") : made.error().to_string();
+}
+
+TEST(EnvelopeGenerator, ControllersThatSetParametersAreRefusedBesideAnNrpnOfTheirChannel) {
+  const std::string nrpn = ramp_to("to = 'nrpn300'\nchannel = 2\n", 0.1);
+  for (const int number : {6, 38, 96, 97, 98, 99, 100, 101}) {
+    const std::string control = ramp_to("to = 'cc" + std::to_string(number) + "'\nchannel = ", 0.1);
+    const std::string fault = fault_of(nrpn, control + "2\n");
+    EXPECT_NE(fault.find("output 1 of 'One' is an NRPN"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("output 1 of 'Two' is controller " + std::to_string(number) + " there"),
+              std::string::npos)
+        << fault;
+    EXPECT_NE(fault_of(control + "2\n", nrpn), "none");
+    EXPECT_NE(fault_of(control + "'note'\n", nrpn), "none");
+    EXPECT_EQ(fault_of(nrpn, control + "3\n"), "none");
+  }
+  EXPECT_EQ(fault_of(nrpn, ramp_to("to = 'cc7'\nchannel = 2\n", 0.1)), "none");
+  EXPECT_EQ(fault_of(nrpn, ramp_to("to = 'nrpn301'\nchannel = 2\n", 0.1)), "none");
+  EXPECT_NE(fault_of(nrpn, ramp_to("to = 'nrpn300'\nbits = 14\nchannel = 2\n", 0.1)), "none");
+  EXPECT_NE(fault_of("[trigger]\nprogram = 1\n" + nrpn,
+                     "[trigger]\nprogram = 2\n" + ramp_to("to = 'cc6'\nchannel = 2\n", 0.1)),
+            "none")
+      << "a parameter stays chosen for a while when the program changes";
+}
+
+TEST(EnvelopeGenerator, AnOutputOnTheNotesChannelMeetsWhatIsFixedWhereTheNoteMayBe) {
+  const auto patch = [](const std::string& to, const std::string& channel,
+                        const std::string& trigger = "", const std::string& top = "") {
+    return top + ramp_to("to = '" + to + "'\nchannel = " + channel + "\n", 0.1, trigger);
+  };
+  const std::string fifth = "[trigger]\nchannel = 5\n", sixth = "[trigger]\nchannel = 6\n";
+  for (const std::string to : {"cc74", "pressure", "bend", "nrpn5"}) {
+    SCOPED_TRACE(to);
+    EXPECT_NE(
+        fault_of(patch(to, "'note'"), patch(to, "5")).find("the note's channel may be the other's"),
+        std::string::npos);
+    EXPECT_NE(fault_of(patch(to, "5"), patch(to, "'note'")), "none");
+    EXPECT_NE(fault_of(patch(to, "5"), patch(to, "'note'", fifth)), "none");
+    EXPECT_EQ(fault_of(patch(to, "5"), patch(to, "'note'", sixth)), "none");
+    EXPECT_EQ(fault_of(patch(to, "'note'", fifth), patch(to, "'note'", sixth)), "none");
+    EXPECT_NE(fault_of(patch(to, "'note'", fifth), patch(to, "'note'")), "none");
+    const std::string mpe = "mode = 'poly'\nnotes = 'mpe'\n";
+    EXPECT_EQ(fault_of(patch(to, "1"), patch(to, "'note'", "", mpe)), "none");
+    EXPECT_NE(fault_of(patch(to, "2"), patch(to, "'note'", "", mpe)), "none");
+  }
+  const std::string low = "[trigger]\nkeys = [0, 59]\n", high = "[trigger]\nkeys = [60, 127]\n";
+  EXPECT_EQ(fault_of(patch("poly_pressure", "3", low), patch("poly_pressure", "3", high)), "none");
+  EXPECT_NE(fault_of(patch("poly_pressure", "3", low), patch("poly_pressure", "3")), "none");
+  EXPECT_NE(fault_of(patch("cc74", "3", low), patch("cc74", "3", high)), "none");
 }
 
 TEST(EnvelopeGenerator, ProgramsChooseWhichPatchHasADestination) {

@@ -245,6 +245,21 @@ TEST(EnvelopePatch, EveryFaultIsToldWithItsPlace) {
       {least("[trigger]\nfrom = 'nope'\n"),
        "test.toml:12:8: error: trigger: from is 'nope'; it must be one of note, pedal, cc0 to "
        "cc119, clock, loop; did you mean 'note'?"},
+      {least("[trigger]\nfrom = 'cc007'\n"),
+       "test.toml:12:8: error: trigger: controllers are cc0 to cc119"},
+      {least("[[outputs]]\nfrom = 'swell'\nto = 'cc007'\n"),
+       "test.toml:13:6: error: output 2: there is no output 'cc007'; there are cc0 to cc119, nrpn0 "
+       "to nrpn16383, bend, pressure, poly_pressure, osc and cv"},
+      {least("[ports.a]\ndevice = \"Mini\\ntaur\"\n"),
+       "test.toml:12:10: error: port 'a': device has a control character (U+000A); it is one line "
+       "of text"},
+      {"format = 1\nkind = 'envelope'\nname = \"a\\u0000b\"\n",
+       "test.toml:3:8: error: envelope patch: name has a control character (U+0000); it is one "
+       "line "
+       "of text"},
+      {"format = 1\nkind = 'envelope'\nabout = \"a\\u001B[2J\"\n",
+       "test.toml:3:9: error: envelope patch: about has a control character (U+001B); it is one "
+       "line of text"},
       {least("[trigger]\nfrom = 'cc120'\n"),
        "test.toml:12:8: error: trigger: controllers are cc0 to cc119"},
       {least("[trigger]\nfrom = 'clock'\nkeys = 3\n"),

@@ -26,18 +26,19 @@ using namespace scenes;  // NOLINT: the words of these tests
 bool is_same(const JournalRecord& a, const JournalRecord& b) {
   return a.time == b.time && a.kind == b.kind && std::memcmp(a.bytes, b.bytes, 3) == 0 &&
          a.sysex_size == b.sysex_size && a.every_channel == b.every_channel && a.index == b.index &&
-         a.sysex == b.sysex &&
+         a.note == b.note && a.is_expression == b.is_expression && a.sysex == b.sysex &&
          std::bit_cast<std::uint64_t>(a.number) == std::bit_cast<std::uint64_t>(b.number);
 }
 
 JournalRecord random_record(const base::RandomStream& random, std::uint64_t& draw) {
   JournalRecord record;
   const std::uint64_t bits = random.bits(draw++);
-  record.kind = static_cast<Event::Kind>(bits % 6);
+  record.kind = static_cast<Event::Kind>(bits % 7);
   if ((bits >> 8 & 3) == 0) record.time.fraction = static_cast<std::uint32_t>(bits >> 32);
   switch (record.kind) {
     case Event::Kind::midi:
       for (int i = 0; i < 3; ++i) record.bytes[i] = static_cast<std::uint8_t>(bits >> (16 + 8 * i));
+      if ((bits >> 58 & 3) == 0) record.note = static_cast<std::int32_t>(bits >> 33 & 0x7FFFFFFF);
       if (record.bytes[0] == 0xF0) record.sysex_size = static_cast<std::uint8_t>(bits >> 60 & 15);
       for (std::size_t i = 0; i < record.sysex_size; ++i) {
         record.sysex[i] = static_cast<std::uint8_t>(random.bits(draw++));
@@ -53,6 +54,21 @@ JournalRecord random_record(const base::RandomStream& random, std::uint64_t& dra
       record.index = static_cast<std::uint32_t>(bits >> 20 & 1);
       break;
     case Event::Kind::all_notes_off:
+      break;
+    case Event::Kind::set_note:
+      record.is_expression = (bits >> 25 & 1) != 0;
+      record.index = static_cast<std::uint32_t>(bits >> 30) % (kSlotCount + 2);
+      if (record.index == kSlotCount) record.index = Event::kNotePressure;
+      if (record.index == kSlotCount + 1) record.index = Event::kNoteTimbre;
+      record.number = static_cast<double>(bits >> 20 & 0xFFFF) / 100;
+      if ((bits >> 26 & 1) != 0) {
+        record.note = static_cast<std::int32_t>(bits >> 33);
+      } else {
+        record.every_channel = (bits >> 24 & 1) != 0;
+        if (!record.every_channel) record.bytes[0] = static_cast<std::uint8_t>(bits >> 20 & 15);
+        const auto key = static_cast<std::uint8_t>(bits >> 56 & 0xFF);
+        record.bytes[1] = key > 127 ? std::uint8_t{Event::kEveryKey} : key;
+      }
       break;
     case Event::Kind::set_target:
       record.every_channel = (bits >> 24 & 1) != 0;
@@ -136,6 +152,26 @@ TEST(Journal, IsTheTextThatTheDocumentShows) {
   record.index = kSlotPan;
   journal.records.push_back(record);
   record = {};
+  record.time.sample = 2000;
+  record.note = 17;
+  record.bytes[0] = 0x90;
+  record.bytes[1] = 64;
+  record.bytes[2] = 100;
+  journal.records.push_back(record);
+  record.kind = Event::Kind::set_note;
+  record.is_expression = true;
+  record.index = kSlotPitch;
+  record.number = 0.5;
+  journal.records.push_back(record);
+  record = {};
+  record.time.sample = 3000;
+  record.kind = Event::Kind::set_note;
+  record.bytes[0] = 2;
+  record.bytes[1] = 60;
+  record.index = Event::kNotePressure;
+  record.number = 0.75;
+  journal.records.push_back(record);
+  record = {};
   record.time.sample = 24000;
   record.kind = Event::Kind::position;
   record.number = 96;
@@ -162,6 +198,9 @@ events
 512+2147483648 midi 90 3c 64
 1000 target 1 oscillator.1.level -6.5
 1000 target every pan -6.5
+2000 numbered 17 90 40 64
+2000 expression note 17 pitch 0.5
+3000 modulation 3 60 pressure 0.75
 24000 position 96
 48000 notes_off
 end
@@ -195,7 +234,9 @@ TEST(Journal, TellsWhatIsWrongAndWhere) {
       {whole + "-1 notes_off\n",
        "t:10:1: error: a time must be here: a sample, or SAMPLE+FRACTION in 2^-32"},
       {whole + "1 play\n",
-       "t:10:3: error: 'midi', 'tempo', 'position', 'bank', 'notes_off' or 'target' must be here "
+       "t:10:3: error: 'midi', 'numbered', 'tempo', 'position', 'bank', 'notes_off', 'target', "
+       "'modulation' or "
+       "'expression' must be here "
        "after a time"},
       {whole + "1 midi 90 3c\n", "t:10:13: error: a byte in two hexadecimal digits must be here"},
       {whole + "1 midi 90  3c 40\n",

@@ -280,6 +280,20 @@ TEST(OutputPort, ANoteThatAFullCableLeavesOutIsLeftOutWithItsEndAndNoOtherHangs)
   EXPECT_NEAR(static_cast<double>(on), static_cast<double>(off), 0.1 * static_cast<double>(on));
 }
 
+TEST(OutputPort, EndsOfNotesHaveAPlaceBehindAllNotesOffWhichNotEveryReceiverHears) {
+  auto port = *OutputPort::create(din(true));
+  const auto post = [&](int status, int one, int two) {
+    return port->post(message(0, status, one, two), OutputPriority::note, true);
+  };
+  for (std::size_t i = 0; i < OutputPort::kMostWaiting; ++i) {
+    ASSERT_TRUE(post(0x90, static_cast<int>(i % 128), 90));
+  }
+  EXPECT_FALSE(post(0x90, 5, 90));
+  ASSERT_TRUE(post(0xB0, 123, 0));
+  for (int key = 0; key < 128; ++key) EXPECT_TRUE(post(0x80, key, 64)) << key;
+  EXPECT_EQ(port->counters().lost, 1);
+}
+
 TEST(OutputPort, UsbCarriesSixteenEventsInAnyMillisecondAndALaneOnceInAFrame) {
   const OutputPortConfig config = config_of(PortSpec::Wire::usb);
   auto port = *OutputPort::create(config);

@@ -43,7 +43,7 @@ Result<CurveSet> read_curve_tables(const base::Node& root, std::string_view sour
 bool is_valid_name(std::string_view name);
 
 /// The version and the kind a file of ours states (`format = 1`, `kind = "curve"`).
-enum class FileKind { curve, patch, bank, envelope, midi_learn };
+enum class FileKind { curve, patch, bank, envelope, midi_learn, plugin, calibration };
 /// Reads the two from a document's root. Errors: missing_key, wrong_type, unsupported_version,
 /// unknown_name.
 Result<FileKind> read_file_kind(const base::Node& root, std::string_view source_name);
@@ -53,5 +53,7 @@ Result<CurveSet> read_curves(const std::string& path);
 
 /// Text that parse_curves reads to equal curves; 17 significant digits, shortest form.
 std::string write_curves(const CurveSet& set);
+/// Its tables alone, for documents that hold more than curves.
+std::string write_curve_tables(const CurveSet& set);
 
 }  // namespace knotwave::curves

@@ -64,10 +64,27 @@ class ShaperProgram {
   curves::CurveProgram moving_;  ///< with controls, in place of all but the breaks
 };
 
+/// One of the curves of a blend.
+struct ShaperLayer {
+  const ShaperProgram* program = nullptr;  ///< without controls, or these at rest
+  std::span<const double> weight;          ///< [n] NaN counts as 0
+};
+/// What moves a blend, each [n].
+struct ShaperMotion {
+  std::span<const float> drive;   ///< multiplies the input
+  std::span<const double> bias;   ///< is added to it then
+  std::span<const double> level;  ///< how much of the blend's value at rest (input 0) is taken away
+  std::span<const double> mix;    ///< clamped to 0..1, NaN = 0
+};
+
 /// One channel's memory: the last input.
 class Shaper {
  public:
-  void reset() KNOTWAVE_RT { *this = {}; }
+  /// As if `x` (driven and biased) had always come in.
+  void reset(double x = 0) KNOTWAVE_RT {
+    *this = {};
+    last_ = x;
+  }
   /// out = mix * mean + (1 - mix) * in (delayed half a sample to agree, as the mean of two inputs).
   /// drive [n] multiplies the input. mix is clamped to 0..1, NaN = 0; NaN in `in` counts as 0. in
   /// and out may be the same. [audio]
@@ -80,8 +97,15 @@ class Shaper {
   void render(const ShaperProgram& program, std::span<const float> drive,
               std::span<const double* const> controls, float mix, std::span<const float> in,
               std::span<float> out) KNOTWAVE_RT;
+  /// A blend of up to kMostLayers curves: the mean of a blend is the blend of their means. One
+  /// layer of weight 1 without bias and level is the render() above, to the bit. A layer costs
+  /// nothing where its weight is 0. [audio]
+  static constexpr std::size_t kMostLayers = 4;
+  void render(std::span<const ShaperLayer> layers, const ShaperMotion& motion,
+              std::span<const float> in, std::span<float> out) KNOTWAVE_RT;
 
  private:
+  struct Blend;
   double last_ = 0;
   double last_dry_ = 0;
   int last_piece_ = 0;  ///< only a hint

@@ -30,6 +30,12 @@ struct MissingPatch {
   bool operator==(const MissingPatch&) const = default;
 };
 
+/// A note that the player numbered (Event::note) and that is heard no more.
+struct EndedNote {
+  std::int32_t note = 0;
+  int channel = 0, key = 0;
+};
+
 /// Counters the audio thread keeps; read them between process() calls.
 struct EngineCounters {
   static constexpr int kMissingNamed = 4;
@@ -77,6 +83,8 @@ class Engine {
   /// The next sample to be rendered. [audio]
   std::int64_t now() const KNOTWAVE_RT;
   const EngineCounters& counters() const KNOTWAVE_RT;
+  /// Those that ended in the last process(), for hosts that follow voices. [audio]
+  std::span<const EndedNote> ended_notes() const KNOTWAVE_RT;
   /// The note begun last of those that sound, for those who show it; patch null: none does. [audio]
   struct Newest {
     const PatchProgram* patch = nullptr;

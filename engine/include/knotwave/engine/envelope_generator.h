@@ -36,6 +36,10 @@ class GeneratorSink {
   virtual void midi(int port, const base::MidiEvent& event) KNOTWAVE_RT = 0;
   /// A number for the OSC address of an output.
   virtual void osc(int patch, int output, base::SampleTime time, double value) KNOTWAVE_RT = 0;
+  /// Volts of an audio channel (from 0) at samples first.. of the patches, lead_s ahead of MIDI: of
+  /// each channel up to the highest that a patch names, at most 64 samples at a time.
+  virtual void volts(int /*channel*/, std::int64_t /*first*/,
+                     std::span<const double> /*values*/) KNOTWAVE_RT {}
 
  protected:
   ~GeneratorSink() = default;
@@ -61,6 +65,7 @@ class EnvelopeGenerator {
   ~EnvelopeGenerator();
 
   const std::vector<PortSpec>& ports() const;  ///< [control] one without a name: our own
+  std::size_t voltage_channels() const;        ///< [control] up to the highest a patch names
 
   /// In order of time; one before now() is heard now. It acts when advance() comes there. MIDI
   /// clock, start, stop and song position set the tempo and the position. False: kMostEvents wait
@@ -68,6 +73,8 @@ class EnvelopeGenerator {
   /// until it is sent. [audio]
   bool handle(const base::MidiEvent& event) KNOTWAVE_RT;
   bool set_tempo(base::SampleTime time, std::uint32_t microseconds_per_quarter) KNOTWAVE_RT;
+  /// The same of any event: what a player of envelopes hears of it is in envelope_player.h.
+  bool tell(const Event& event) KNOTWAVE_RT;
   static constexpr std::size_t kMostEvents = 8192;
   static constexpr std::size_t kMostEndings = 2048;
   /// Plays up to sample `until`: all that cables begin before `until` - lead_s is sent, in order of
@@ -80,6 +87,13 @@ class EnvelopeGenerator {
   /// is_at_rest(). [audio]
   void go_to_rest() KNOTWAVE_RT;
   bool is_at_rest() const KNOTWAVE_RT;
+  /// Ends the notes it sent and every envelope at once, and plays on: outputs go to their rest
+  /// values until a gate opens. What was handled and not yet heard is left out. [audio]
+  void end_all() KNOTWAVE_RT;
+
+  /// Nothing is sent until something is handled, however far advance() goes. LFOs, clocks and loops
+  /// never stand still, and a gate that is open does not. [audio]
+  bool is_still() const KNOTWAVE_RT;
 
   std::int64_t now() const KNOTWAVE_RT;   ///< of the patches
   std::int64_t lost() const KNOTWAVE_RT;  ///< what handle() had no room for

@@ -3,6 +3,7 @@
 // curves that then play, and where their values go. Plain data. docs/envelope-format.md is the
 // user's page of this. [control]
 #pragma once
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -119,6 +120,9 @@ struct EnvelopePatchSpec {
 /// malformed (no outputs and no events; keys that do not go together); all with file, line and
 /// column.
 Result<EnvelopePatchSpec> read_envelope_patch(const std::string& path);
+/// The same from texts in place of the disk, as read_bank() does it.
+Result<EnvelopePatchSpec> read_envelope_patch(const std::string& path,
+                                              std::span<const FileText> texts);
 /// From text; files are looked up beside `source_name`. For tests and fuzzers.
 Result<EnvelopePatchSpec> parse_envelope_patch(std::string_view text, std::string_view source_name);
 

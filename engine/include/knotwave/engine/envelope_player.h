@@ -19,6 +19,23 @@ struct EnvelopePlayerConfig {
   int most_ahead_samples = 256;  ///< what predict() may be asked for, 0..65536
 };
 
+/// What set_target events may move in an envelope player beside the slots of map_slots.h.
+/// + output: an output's number x becomes x + depth (x - rest) + offset |high - low|, with what is
+/// set, both 0 at first; either glides for kTargetGlideSeconds. Destinations hold it in their
+/// range.
+inline constexpr int kSlotOutputDepth = 1024;
+inline constexpr int kSlotOutputOffset = kSlotOutputDepth + kMaxOutputs;
+/// Other than 0: the patch's own trigger is not heard, kSlotGate alone opens the gate. Notes pass
+/// as the patch says. A change closes the gate.
+inline constexpr int kSlotGateByHand = kSlotOutputOffset + kMaxOutputs;
+/// By hand: 1 to 127 opens the gate with this velocity, as middle C of the trigger's channel (with
+/// NoteOutput::mpe that note goes out); 0 closes it.
+inline constexpr int kSlotGate = kSlotGateByHand + 1;
+/// The song is at this quarter note and runs on from there. From 1/96 on it is another place: a
+/// clock division closes its gate, and the next opening comes where it belongs.
+inline constexpr int kSlotSong = kSlotGate + 1;
+inline constexpr int kSlotSongStops = kSlotSong + 1;  ///< as Stop (FC), whatever the number
+
 /// A note on or off for the patch's NoteOutput, a note or gate of a place event: what must go out
 /// as it is.
 struct PlayerMessage {
@@ -47,7 +64,8 @@ class EnvelopePlayer {
   /// Start (FA) puts the song at 0: at the first clock (F8) that follows where clocks came within
   /// the last second, else at once. Stop (FC) closes the gate of a clock division, Continue (FB)
   /// goes on from there or from the last song position (F2). A clock or loop that release_all()
-  /// ended begins again with Start or Continue. install_bank and set_target are left out.
+  /// ended begins again with Start or Continue. set_target adds to the slots of map_slots.h and
+  /// moves those above, of every channel whatever it says. install_bank is left out.
   void handle(const Event& event) KNOTWAVE_RT;
   /// The next n <= kMostSamples samples; now() grows by n. An event within the block must have been
   /// handled before: split blocks at events. Any split gives the same bits. [audio]
@@ -77,14 +95,18 @@ class EnvelopePlayer {
   std::span<const PlayerMessage> take_messages() KNOTWAVE_RT;
 
   std::int64_t now() const KNOTWAVE_RT;  ///< the next sample to be rendered
-  /// No gate is open, no clock opens one, and nothing that an output hears runs or glides: values
-  /// stay. LFOs never stand still once a gate was open. [audio]
+  /// No gate is open, no clock opens one, nothing that an output hears runs or glides, and no note
+  /// or gate of a place is to end: values stay, and nothing is told. LFOs never stand still once a
+  /// gate was open. [audio]
   bool is_still() const KNOTWAVE_RT;
   /// Where an envelope of a voice is, for those who show it: 0..1. [audio]
   double place(int voice, int envelope) const KNOTWAVE_RT;
   /// Closes every gate now, lets go the notes that went out, and stays closed to clock and loop.
   /// Keys and controllers open gates again. [audio]
   void release_all() KNOTWAVE_RT;
+  /// Closes every gate, lets go the notes that went out and ends every envelope at once: outputs
+  /// have their rest value until a gate opens. Clock, loop, controllers and targets go on. [audio]
+  void end_all() KNOTWAVE_RT;
 
  private:
   struct State;

@@ -92,6 +92,8 @@ class LiveEngine {
                std::span<float> right) KNOTWAVE_RT;
   /// As Engine::is_idle(). [audio]
   bool is_idle() const KNOTWAVE_RT;
+  /// As Engine::ended_notes(). [audio]
+  std::span<const EndedNote> ended_notes() const KNOTWAVE_RT;
   double rate_hz() const KNOTWAVE_RT;  ///< [any]
 
  private:

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "knotwave/base/rt.h"
+#include "knotwave/engine/event.h"
 #include "knotwave/engine/patch.h"
 
 namespace knotwave::engine {
@@ -18,15 +19,18 @@ class NoteStack {
     std::uint8_t velocity = 0;
     bool key_down = false;
     bool sostenuto = false;
+    std::int32_t number = Event::kNoNote;  ///< the player's own (Event::note)
   };
 
   void clear() KNOTWAVE_RT { size_ = 0; }
   bool is_empty() const KNOTWAVE_RT { return size_ == 0; }
   int size() const KNOTWAVE_RT { return size_; }
   /// Pressed (again): moves to the newest place.
-  void press(int key, int velocity) KNOTWAVE_RT;
+  void press(int key, int velocity, std::int32_t number = Event::kNoNote) KNOTWAVE_RT;
   /// The key goes up; it stays while `sustain` or its sostenuto holds it. True if it was down.
-  bool lift(int key, bool sustain) KNOTWAVE_RT;
+  /// With `number` that of this number, or one of the key without a number.
+  bool lift(int key, bool sustain, std::int32_t number = Event::kNoNote) KNOTWAVE_RT;
+  bool holds(std::int32_t number) const KNOTWAVE_RT;  ///< a numbered note
   /// Sostenuto goes down: holds the keys that are down now.
   void catch_sostenuto() KNOTWAVE_RT;
   void drop_sostenuto(bool sustain) KNOTWAVE_RT;

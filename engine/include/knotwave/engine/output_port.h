@@ -5,10 +5,11 @@
 // A value is a step of its lane: 0..127 or 0..16383. A message is on the wire for its bytes and
 // counts when its last byte has come. While the cable is free, a message is begun so that it has
 // come when the value crosses to the next step (half way between two). While it is not, the newest
-// value wins, and among lanes priority, then the one that waits longest. A receiver holds what it
-// heard until it hears more: where a value runs faster than its messages, the mean of what it does
-// meanwhile is sent, but for the lowest and the highest step that the lane has had, which are
-// always reached, and the last value, which is always sent.
+// value wins, and among lanes priority, then the one that waits longest; a controller that has
+// waited 10 ms goes before the next bend or pressure. A receiver holds what it heard until it hears
+// more: where a value runs faster than its messages, the mean of what it does meanwhile is sent,
+// but for the lowest and the highest step that the lane has had, which are always reached, and the
+// last value, which is always sent.
 //
 // What a value of 14 bits costs: the upper half, then the lower; the lower alone while the upper is
 // the same; the upper alone while the lower was and is 0, which is how a value that runs by more
@@ -102,9 +103,9 @@ class OutputPort {
   /// All but clocks keep their order, so one is as urgent as the most urgent behind it. False:
   /// kMostWaiting were waiting (kEndings more for controllers that end notes), it is lost; so is
   /// the end of a note whose beginning was. The end of one that was taken is always taken, for two
-  /// beginnings of a key. System exclusive is kept by reference until it is sent. Controllers that
-  /// change what a lane's receiver holds (its other half, CC 6, 38, 96 to 101, 121) are minded: the
-  /// lane says it again. [audio]
+  /// beginnings of a key, behind "all notes off" too. System exclusive is kept by reference until
+  /// it is sent. Controllers that change what a lane's receiver holds (its other half, CC 6, 38, 96
+  /// to 101, 121) are minded: the lane says it again. [audio]
   bool post(const base::MidiEvent& event, OutputPriority priority, bool is_thru) KNOTWAVE_RT;
 
   /// The values of one lane over a block: steps, unrounded; [n + ahead_samples()]. Empty: it holds.

@@ -47,6 +47,8 @@ class VoltageOutput {
   /// Begins the way to 0 V at `sample`. [audio]
   void ramp_out(std::int64_t sample) KNOTWAVE_RT;
   bool is_silent(std::int64_t sample) const KNOTWAVE_RT;  ///< it has come to 0 V
+  /// The next sample is the first again: a device that was lost is back. [control, not rendering]
+  void begin_again();
   std::int64_t clamped() const KNOTWAVE_RT { return clamped_; }
 
  private:

@@ -27,6 +27,9 @@ struct MidiInputConfig {
   /// Parts of names in any case; empty: all, also those to come. Virtual outputs of this program
   /// are never opened; with all, ports of ALSA that JACK shows once more are left to ALSA.
   std::vector<std::string> ports;
+  /// With all, no port with this in its name, in any case: what it sends would come round. Empty:
+  /// none is left out.
+  std::string left_out;
   bool virtual_port = true;  ///< one of our own, "in", that others can connect to
   std::string client_name = "Knotwave";
 };
@@ -71,7 +74,7 @@ class MidiInputs {
   /// a second. True if a port came or went.
   virtual bool poll() = 0;
   virtual std::vector<MidiPortStatus> ports() const = 0;
-  /// Lines worth telling: APIs that do not work here, ports beyond kMaxMidiPorts.
+  /// Lines worth telling: APIs that do not work here, ports beyond kMaxMidiPorts and left out.
   virtual std::vector<std::string> notes() const = 0;
 };
 

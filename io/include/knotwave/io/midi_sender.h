@@ -20,6 +20,7 @@ struct MidiSenderConfig {
   std::vector<MidiOutputConfig> ports;  ///< `lateness` of each is the sender's own
   std::size_t waiting = 8192;           ///< messages of a port that are not due yet
   std::size_t waiting_sysex_bytes = 65536;
+  bool is_woken = false;  ///< who pushes calls wake() behind it
   std::function<Result<std::unique_ptr<MidiOutput>>(const MidiOutputConfig&)> open =
       MidiOutput::open;
 };
@@ -37,7 +38,8 @@ struct MidiSenderPort {
 /// Open from open() to the destructor. [control] of one thread, unless said otherwise.
 class MidiSender {
  public:
-  /// How long before it is due a message must be pushed to be in time: the thread wakes so often.
+  /// How long before it is due a message must be pushed to be in time: the thread wakes so often,
+  /// unless it is woken. Then it sleeps until something is due.
   static constexpr std::int64_t kWakeNs = 250'000;
 
   /// Errors: those of MidiOutput::open() for the first port that fails, io_failed (no thread).
@@ -52,6 +54,9 @@ class MidiSender {
   /// exclusive is copied. Of one port messages go in the order they were pushed, none before it is
   /// due. False: it was dropped, and counted. [audio] of one thread
   bool push(int port, const base::MidiEvent& event, std::int64_t due_ns) KNOTWAVE_RT;
+
+  /// There are new messages. One system call where the thread sleeps. [any]
+  void wake() noexcept;
 
   /// Looks for ports that vanished or came back: call it some ten times a second. True if one did.
   bool poll();

@@ -3,6 +3,7 @@
 
 #include "knotwave/engine/envelope_patch_program.h"
 #include "knotwave/engine/midi_learn.h"
+#include "knotwave/engine/voltage_output.h"
 
 #include "bank_input/bank_input.h"
 #include "bank_input/patch_warnings.h"
@@ -45,6 +46,11 @@ Result<std::string> checked(const std::string& path) {
     const auto learnt = engine::parse_midi_learn(file->text, path);
     if (!learnt) return learnt.error();
     return "MIDI learn file, " + count_of(learnt->knobs.size(), "knob");
+  }
+  if (file->kind == curves::FileKind::calibration) {
+    const auto channels = engine::parse_calibration(file->text, path);
+    if (!channels) return channels.error();
+    return "calibration, " + count_of(channels->size(), "channel");
   }
   if (file->kind == curves::FileKind::envelope) return checked_envelope_patch(path);
   // Compiled as for playing: what is ok here can be rendered.

@@ -19,6 +19,12 @@ Result<KnownFile> read_known_file(const std::string& path) {
   if (!root) return root.error();
   const auto kind = curves::read_file_kind(*root, path);
   if (!kind) return kind.error();
+  if (*kind == curves::FileKind::plugin) {
+    Error error = fail(ErrorCode::unsupported,
+                       "this is the state of a plugin, which only the plugin itself can read");
+    error.source = path;
+    return error;
+  }
   return KnownFile{std::move(*text), *kind};
 }
 
@@ -31,8 +37,11 @@ Result<curves::CurveSet> read_set(const std::string& path) {
     error.source = path;
     return error;
   }
-  if (file->kind == curves::FileKind::midi_learn) {
-    Error error = fail(ErrorCode::unsupported, "a MIDI learn file holds no curves");
+  const bool is_calibration = file->kind == curves::FileKind::calibration;
+  if (is_calibration || file->kind == curves::FileKind::midi_learn) {
+    Error error = fail(
+        ErrorCode::unsupported,
+        std::string(is_calibration ? "a calibration" : "a MIDI learn file") + " holds no curves");
     error.source = path;
     return error;
   }

@@ -76,6 +76,7 @@ class LiveCapture {
     io::MidiInputConfig config;
     config.api = options_.midi_api == "rtmidi-jack" ? "jack" : options_.midi_api;
     config.ports = options_.midi_in;
+    config.left_out = kOutputClient;
     config.client_name = "Knotwave-env-in";
     auto inputs = io::MidiInputs::open(config, ear_);
     if (!inputs) return inputs.error();

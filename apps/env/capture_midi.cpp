@@ -122,6 +122,47 @@ std::string ValueList::text() const {
   return text;
 }
 
+namespace {
+
+constexpr int kHalf = 128;  ///< what 7 of 14 bits count in
+constexpr std::size_t kLeastToTell = 4;
+
+/// A wheel that knows 7 of its 14 bits: every value has a low half of 0, or at the upper stop both
+/// are full.
+bool is_coarse(const std::vector<engine::TimedStep>& steps, int last_step) {
+  const auto has = [&](int step) {
+    return std::any_of(steps.begin(), steps.end(), [=](const auto& s) { return s.step == step; });
+  };
+  if (last_step < kHalf || steps.size() < kLeastToTell) return false;
+  if (has(last_step) && has(last_step - kHalf + 1)) return false;
+  return std::all_of(steps.begin(), steps.end(), [=](const engine::TimedStep& s) {
+    return s.step % kHalf == 0 || s.step == last_step;
+  });
+}
+
+/// Between its own steps such a wheel is known as a knob of 7 bits is: the line is that of the
+/// upper halves, each then what was told for it.
+Result<engine::TimedLine> coarse_line(std::vector<engine::TimedStep> steps,
+                                      engine::KnobLineConfig config) {
+  const int top = config.last_step;
+  const bool has_top = std::any_of(steps.begin(), steps.end(),
+                                   [=](const engine::TimedStep& s) { return s.step == top; });
+  for (engine::TimedStep& s : steps) s.step /= kHalf;
+  config.last_step = top / kHalf;
+  auto line = engine::knob_line(steps, config);
+  if (!line) return line;
+  const auto told = [&](int half) {
+    return half == config.last_step && has_top ? top : half * kHalf;
+  };
+  for (double& value : line->values) {
+    const int below = std::min(static_cast<int>(value), config.last_step - 1);
+    value = told(below) + (value - below) * (told(below + 1) - told(below));
+  }
+  return line;
+}
+
+}  // namespace
+
 Result<Recording> recording_of(const CaptureOptions& options, const KnobRecorder& recorder,
                                const MoveSpan& span) {
   Recording recording;
@@ -148,7 +189,12 @@ Result<Recording> recording_of(const CaptureOptions& options, const KnobRecorder
     config.begin = 0;
     config.end = span.end / span.samples_per_unit;
   }
-  auto line = knob_line(recording.steps, config);
+  const bool coarse = is_coarse(recording.steps, recording.last_step);
+  if (coarse) {
+    recording.usual_tolerance = 0.5 * kHalf;
+    recording.scale += ", told with 7 bits";
+  }
+  auto line = coarse ? coarse_line(recording.steps, config) : knob_line(recording.steps, config);
   if (!line) return line.error();
   recording.line = std::move(*line);
   for (double& value : recording.line.values) value /= recording.last_step;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "knotwave/engine/voltage_mix.h"
 #include "knotwave/engine/voltage_output.h"
 
 #include "patch_players.h"
@@ -30,26 +31,17 @@ class CvPlayer {
   /// Gates close, and every channel goes to 0 V from now on. [audio]
   void ramp_out() KNOTWAVE_RT;
   bool is_silent() const KNOTWAVE_RT;
+  /// Ramps in again with the next sample. [control, not rendering]
+  void begin_again();
   std::int64_t clamped() const KNOTWAVE_RT;
 
  private:
-  /// A gate of a place event: open from a sample to another.
-  struct Gate {
-    std::size_t patch = 0, event = 0, channel = 0;
-    double volts = 0;
-    bool is_open = false;
-  };
-  struct Route {
-    std::size_t patch = 0, output = 0, channel = 0;
-  };
-  explicit CvPlayer(PatchPlayers players) : players_(std::move(players)) {}
-  void add_gates(std::int64_t first, std::size_t n) KNOTWAVE_RT;
+  CvPlayer(PatchPlayers players, engine::VoltageMix mix)
+      : players_(std::move(players)), mix_(std::move(mix)) {}
 
   PatchPlayers players_;
+  engine::VoltageMix mix_;
   std::vector<engine::VoltageOutput> outputs_;
-  std::vector<Route> routes_;
-  std::vector<Gate> gates_;
-  std::vector<std::array<double, kMostSamples>> volts_;  ///< [channel]
 };
 
 }  // namespace knotwave::env

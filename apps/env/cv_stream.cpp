@@ -42,17 +42,15 @@ std::string highest_channel_text(const EnvInput& input) {
 }
 
 Result<std::unique_ptr<CvStream>> CvStream::open(const EnvOptions& options, const EnvInput& input) {
-  engine::VoltageConfig voltage;
-  voltage.direct_current = options.direct_current;
+  std::unique_ptr<CvStream> cv(new CvStream(options, input));
+  cv->voltage_.direct_current = options.direct_current;
   auto channels = read_calibration(options);
   if (!channels) return channels.error();
-  voltage.channels = std::move(*channels);
-  // The rate is the device's, which only an open stream knows; until the players are there it
-  // plays silence.
-  std::unique_ptr<CvStream> cv(new CvStream);
-  auto probe = CvPlayer::create(voltage, options.seed, input.voltage_patches());
+  cv->voltage_.channels = std::move(*channels);
+  // The rate is the device's, which only an open stream knows.
+  const auto probe = CvPlayer::create(cv->voltage_, options.seed, input.voltage_patches());
   if (!probe) return probe.error();
-  io::AudioConfig audio;
+  io::AudioConfig& audio = cv->audio_;
   audio.api = options.audio_api;
   audio.device = options.audio_device;
   audio.client_name = "Knotwave-env-cv";
@@ -66,20 +64,64 @@ Result<std::unique_ptr<CvStream>> CvStream::open(const EnvOptions& options, cons
     }
     return error;
   }
-  cv->rate_hz_ = voltage.rate_hz = (*stream)->format().rate_hz;
-  auto player = CvPlayer::create(voltage, options.seed, input.voltage_patches());
-  if (!player) return player.error();
-  cv->player_ = std::make_unique<CvPlayer>(std::move(*player));
-  for (engine::MidiClock& clock : cv->clocks_) clock.reset(cv->rate_hz_);
-  cv->stream_ = std::move(*stream);
-  if (const auto started = cv->stream_->start(); !started) return started.error();
+  // The same way again if it is lost: another one might take the card from a server that returns.
+  audio.api = (*stream)->format().api;
+  if (const auto started = cv->start(std::move(*stream)); !started) return started.error();
   return cv;
+}
+
+Result<void> CvStream::make_player(double rate_hz) {
+  voltage_.rate_hz = rate_hz;
+  auto player = CvPlayer::create(voltage_, options_.seed, input_.voltage_patches());
+  if (!player) return player.error();
+  player_ = std::make_unique<CvPlayer>(std::move(*player));
+  for (engine::MidiClock& clock : clocks_) clock.reset(rate_hz);
+  rate_hz_ = rate_hz;
+  has_front_ = false;
+  while (ring_.pop(front_)) {
+  }
+  return {};
+}
+
+Result<void> CvStream::start(std::unique_ptr<io::AudioStream> stream) {
+  const double rate_hz = stream->format().rate_hz;
+  const bool is_other = player_ == nullptr || rate_hz != rate_hz_ || is_overrun_.exchange(false);
+  if (is_other) {
+    if (auto made = make_player(rate_hz); !made) return made;
+  }
+  player_->begin_again();
+  stream_ = std::move(stream);
+  return stream_->start();
 }
 
 CvStream::~CvStream() { stream_.reset(); }
 
 void CvStream::heard(const base::MidiEvent& event, std::int64_t time_ns) noexcept {
-  if (event.bytes[0] != 0xF0) ring_.push({event, time_ns});
+  if (event.bytes[0] != 0xF0 && !ring_.push({event, time_ns})) is_overrun_ = true;
+}
+
+std::string CvStream::look() {
+  constexpr std::int64_t kTryEveryNs = 1'000'000'000;
+  if (!is_lost_) {
+    const io::AudioStatus status = stream_->status();
+    if (status.state != io::AudioStatus::State::lost) return {};
+    is_lost_ = true;
+    stream_.reset();
+    return "control voltage: " + status.reason + "; it is looked for";
+  }
+  const std::int64_t now_ns = io::steady_clock_ns();
+  if (auto opened = opener_.take(); opened && *opened) {
+    if (start(**std::move(opened))) {
+      is_lost_ = false;
+      return "control voltage is back: " + device_text();
+    }
+    stream_.reset();
+  }
+  if (now_ns >= next_try_ns_ && !must_ramp_out_) {
+    opener_.begin(audio_, *this);
+    next_try_ns_ = now_ns + kTryEveryNs;
+  }
+  return {};
 }
 
 /// Clocks become tempo; everything is told at the sample that is played next.
@@ -137,11 +179,6 @@ std::string CvStream::device_text() const {
   const io::AudioFormat& format = stream_->format();
   return format.api + " '" + format.device + "', " + base::number_text(format.rate_hz) +
          " Hz, channels 1 to " + std::to_string(format.channels);
-}
-
-std::string CvStream::fault() {
-  const io::AudioStatus status = stream_->status();
-  return status.state == io::AudioStatus::State::lost ? status.reason : std::string();
 }
 
 }  // namespace knotwave::env

@@ -15,6 +15,7 @@
 #include "cv_player.h"
 #include "env_input.h"
 #include "planner.h"
+#include "stream_opener.h"
 
 namespace knotwave::env {
 
@@ -34,18 +35,24 @@ class CvStream final : public PlannerListener, private io::AudioClient {
   void heard(const base::MidiEvent& event, std::int64_t time_ns) noexcept override;
   /// Every channel goes to 0 V; is_silent() tells when it is there. [control]
   void ramp_out() { must_ramp_out_ = true; }
-  bool is_silent() const { return is_silent_; }
+  bool is_silent() const { return is_lost_ || is_silent_; }
   /// "jack 'system', 48000 Hz, channels 1 to 4". [control]
   std::string device_text() const;
-  /// Why it is lost; empty: it is not. Call it some ten times a second. [control]
-  std::string fault();
+  /// What there is to tell: why the device is lost, that it is back. A lost one is looked for once
+  /// a second; what was held plays on, and ramps in again. Call it some ten times a second.
+  /// [control]
+  std::string look();
 
  private:
   struct Heard {
     base::MidiEvent event;  ///< without system exclusive
     std::int64_t time_ns = 0;
   };
-  CvStream() { out_.fill(nullptr); }
+  CvStream(const EnvOptions& options, const EnvInput& input) : options_(options), input_(input) {
+    out_.fill(nullptr);
+  }
+  Result<void> start(std::unique_ptr<io::AudioStream> stream);
+  Result<void> make_player(double rate_hz);
   void process(const io::AudioBlock& block) KNOTWAVE_RT override;
   void play_until(std::size_t end, const io::AudioBlock& block) KNOTWAVE_RT;
   void handle(const Heard& heard) KNOTWAVE_RT;
@@ -53,6 +60,13 @@ class CvStream final : public PlannerListener, private io::AudioClient {
   static constexpr std::size_t kMostHeard = 4096;
   static constexpr std::int64_t kPlannerNs = 2'000'000;  ///< what the planner takes at most
 
+  const EnvOptions& options_;
+  const EnvInput& input_;
+  io::AudioConfig audio_;
+  engine::VoltageConfig voltage_;
+  synth::StreamOpener opener_;
+  bool is_lost_ = false;
+  std::int64_t next_try_ns_ = 0;
   std::unique_ptr<CvPlayer> player_;
   base::SpscRing<Heard> ring_{kMostHeard};
   std::array<engine::MidiClock, io::kMaxMidiPorts> clocks_;
@@ -61,7 +75,7 @@ class CvStream final : public PlannerListener, private io::AudioClient {
   Heard front_;
   std::size_t at_ = 0;  ///< frame of the block that is played next
   std::array<float*, 256> out_;
-  std::atomic<bool> must_ramp_out_{false}, is_silent_{false};
+  std::atomic<bool> must_ramp_out_{false}, is_silent_{false}, is_overrun_{false};
   bool is_ramping_ = false;
   std::unique_ptr<io::AudioStream> stream_;  ///< goes first
 };

@@ -12,6 +12,10 @@
 
 namespace knotwave::env {
 
+/// What servers call the outputs. Inputs leave it out unless it is named: two programs would play
+/// each other round and round.
+inline constexpr const char* kOutputClient = "Knotwave-env";
+
 struct EnvInput {
   std::vector<std::unique_ptr<const engine::EnvelopePatchProgram>> programs;
   std::vector<std::string> warnings;  ///< what in the patches can hardly be meant

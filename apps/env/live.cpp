@@ -50,7 +50,7 @@ Result<std::vector<io::MidiOutputConfig>> output_ports(const EnvOptions& options
     io::MidiOutputConfig& config = all.emplace_back();
     config.api = options.midi_api;
     config.port = port.device;
-    config.client_name = "Knotwave-env";
+    config.client_name = kOutputClient;
     if (!port.name.empty()) config.own_name = port.name;
     names.push_back(port.name);
   }
@@ -87,6 +87,7 @@ Result<void> Live::open_outputs() {
   if (!ports) return ports.error();
   io::MidiSenderConfig config;
   config.ports = std::move(*ports);
+  config.is_woken = true;
   auto sender = io::MidiSender::open(std::move(config));
   if (!sender) return sender.error();
   sender_ = std::move(*sender);
@@ -114,6 +115,7 @@ Result<void> Live::open_inputs() {
   io::MidiInputConfig midi;
   midi.api = options_.midi_api == "rtmidi-jack" ? "jack" : options_.midi_api;  // of outputs alone
   midi.ports = options_.midi_in;
+  midi.left_out = kOutputClient;
   midi.client_name = "Knotwave-env-in";
   auto inputs = io::MidiInputs::open(midi, *planner_);
   if (!inputs) return inputs.error();
@@ -139,11 +141,14 @@ void Live::say_beginning() {
   }
 }
 
+/// Our own port counts once something came through it.
 std::string Live::input_name() const {
-  std::vector<std::string> open;
+  std::vector<std::string> open, own;
   for (const io::MidiPortStatus& port : inputs_->ports()) {
-    if (port.is_open) open.push_back(port.name);
+    if (!port.is_open) continue;
+    (port.is_own && port.messages == 0 ? own : open).push_back(port.name);
   }
+  if (open.empty()) open = own;
   if (open.size() == 1) return open.front();
   return open.empty() ? "" : std::to_string(open.size()) + " inputs";
 }
@@ -193,11 +198,8 @@ void Live::look() {
       tell("'" + ports[i].name + "' " + (was_open_[i] ? "is back" : "has gone"));
     }
   }
-  if (cv_ == nullptr || is_cv_lost_) return;
-  if (const std::string fault = cv_->fault(); !fault.empty()) {
-    tell("control voltage: " + fault);
-    is_cv_lost_ = true;
-  }
+  if (cv_ == nullptr) return;
+  if (const std::string news = cv_->look(); !news.empty()) tell(news);
 }
 
 /// Destinations at rest, and the last message on its cable.
@@ -206,8 +208,7 @@ void Live::rest() {
   if (cv_ != nullptr) cv_->ramp_out();
   const std::int64_t latest_ns = io::steady_clock_ns() + kRestNs;
   const auto is_at_rest = [this] {
-    return planner_->is_at_rest() && sender_->is_done() &&
-           (cv_ == nullptr || is_cv_lost_ || cv_->is_silent());
+    return planner_->is_at_rest() && sender_->is_done() && (cv_ == nullptr || cv_->is_silent());
   };
   while (!is_at_rest() && io::steady_clock_ns() < latest_ns) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -51,7 +51,6 @@ class Live {
   std::vector<std::string> told_;           ///< the status lines of a second ago
   std::vector<bool> was_open_;              ///< outputs
   std::vector<std::int64_t> reopened_;      ///< of the outputs, when last seen
-  bool is_cv_lost_ = false;
 };
 
 /// MIDI inputs and outputs and sound devices, as --list prints them.

@@ -111,7 +111,7 @@ Result<std::string> write_voltages(const EnvOptions& options, const EnvInput& in
   play_song(
       song,
       [&](base::SampleTime time, std::uint32_t tempo) {
-        file->play_until(time.sample);
+        file->play_until(base::first_sample(time));
         event.kind = engine::Event::Kind::tempo;
         event.midi = {};
         event.midi.time = time;
@@ -119,7 +119,7 @@ Result<std::string> write_voltages(const EnvOptions& options, const EnvInput& in
         file->player().handle(event);
       },
       [&](const base::MidiEvent& midi) {
-        file->play_until(midi.time.sample);
+        file->play_until(base::first_sample(midi.time));
         event.kind = engine::Event::Kind::midi;
         event.midi = midi;
         file->player().handle(event);
@@ -151,6 +151,14 @@ void say_warnings(const std::string& name, const io::Song& song) {
   }
 }
 
+void say_left_out(const EnvOptions& options, const EnvInput& input) {
+  for (const engine::EnvelopePatchProgram* patch : input.voltage_patches()) {
+    std::fprintf(stderr, "%s: warning: the control voltage of '%s' is left out; a .wav holds it\n",
+                 io::printable(options.output, 4096).c_str(),
+                 io::printable(patch->spec().patch.name, 400).c_str());
+  }
+}
+
 Result<std::string> run_offline(const EnvOptions& options, const EnvInput& input) {
   auto song = io::read_midi_file(options.dry_run);
   if (!song) return std::move(song).error();
@@ -159,7 +167,9 @@ Result<std::string> run_offline(const EnvOptions& options, const EnvInput& input
   if (!run) return run.error();
   // No device is opened, but a name that would be refused live is refused here.
   if (const auto known = output_ports(options, run->port_specs); !known) return known.error();
-  std::string lines;
+  const bool is_sound = base::has_ending(options.output, ".wav");
+  if (!is_sound && !options.output.empty() && !options.quiet) say_left_out(options, input);
+  std::string lines, voltage_line;
   if (base::has_ending(options.output, ".mid")) {
     if (const auto written = write_song(options, *run); !written) return written.error();
   } else if (base::has_ending(options.output, ".csv")) {
@@ -168,7 +178,7 @@ Result<std::string> run_offline(const EnvOptions& options, const EnvInput& input
   } else if (!options.output.empty()) {
     auto line = write_voltages(options, input, *song);
     if (!line) return line.error();
-    lines = *line + "\n";
+    voltage_line = *line + "\n";
   }
   if (!options.plot.empty()) {
     const auto svg = plot_of(options, input, *song, *run);
@@ -183,8 +193,7 @@ Result<std::string> run_offline(const EnvOptions& options, const EnvInput& input
           " " + message_text(message, run->names) + "\n";
     }
   }
-  const bool is_sound = base::has_ending(options.output, ".wav");
-  return lines + dry_run_line(*run, is_sound ? "" : options.output) + "\n";
+  return lines + dry_run_line(*run, is_sound ? "" : options.output) + "\n" + voltage_line;
 }
 
 }  // namespace knotwave::env

@@ -4,10 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "knotwave/base/file.h"
-
 #include "command_line/options.h"
-#include "command_line/places.h"
+#include "conflict.h"
 
 namespace knotwave::env {
 namespace {
@@ -44,7 +42,10 @@ void add_devices(CLI::App& app, EnvOptions& o) {
   add_text(app, {"--midi-api", "as --list names them; all if not given", "API"}, o.midi_api);
   add_texts(
       app,
-      {"--midi-in", "part of a MIDI input's name; can be given again (all if not given)", "PORT"},
+      {"--midi-in",
+       "part of a MIDI input's name; can be given again (if not given all but what knotwave-env "
+       "sends)",
+       "PORT"},
       o.midi_in);
   add_texts(app,
             {"--midi-out",
@@ -162,97 +163,6 @@ void add_capture(CLI::App& app, EnvOptions& o) {
       c.floor_db, -200.0, 0.0);
 }
 
-bool is_midi_file(const std::string& path) {
-  for (const char* ending : {".mid", ".midi", ".rmi"}) {
-    if (base::has_ending(path, ending)) return true;
-  }
-  return false;
-}
-
-std::string capture_file_conflict(const EnvOptions& o) {
-  const CaptureOptions& c = o.capture;
-  if (!o.output.empty() && !base::has_ending(o.output, ".toml")) {
-    return "--output: '" + o.output + "' does not end in .toml, as a captured curve does";
-  }
-  if (!o.plot.empty() && !base::has_ending(o.plot, ".svg")) {
-    return "--plot: '" + o.plot + "' does not end in .svg";
-  }
-  std::vector<command_line::NamedFile> inputs, outputs;
-  if (!c.from.empty()) inputs.push_back({"--from", c.from});
-  if (!o.output.empty()) outputs.push_back({"--output", o.output});
-  if (!o.plot.empty()) outputs.push_back({"--plot", o.plot});
-  return command_line::overlap(inputs, outputs);
-}
-
-std::string capture_conflict(EnvOptions& o) {
-  CaptureOptions& c = o.capture;
-  if (!o.patches.empty()) {
-    return "'" + o.patches.front() +
-           "' is not played while --capture records; a file to capture goes behind --from";
-  }
-  if (!o.dry_run.empty())
-    return "--dry-run plays, --capture records: --from names what is captured";
-  if (c.is_sound && c.from.empty()) {
-    return "--capture " + c.word + " is of a sound file: name it with --from";
-  }
-  if (c.is_sound && is_midi_file(c.from)) {
-    return "--capture " + c.word + " is of a sound, '" + c.from + "' is named as a MIDI file";
-  }
-  if (!c.is_sound && !c.from.empty() && !is_midi_file(c.from)) {
-    return "--capture " + c.word +
-           " is of MIDI: --from takes a .mid; loudness and peak are of sounds";
-  }
-  if (!c.is_sound && c.floor_db != 0) return "--floor is for loudness and peak";
-  if (c.is_sound && c.bits != 0) return "--bits is for MIDI controllers and NRPN";
-  if (c.is_sound && c.hop_s > c.window_s) return "--hop is longer than --window";
-  if (c.is_sound) return capture_file_conflict(o);
-  const auto value = engine::parse_midi_value(c.word, c.bits);
-  if (!value) return "--bits: " + value.error().message;
-  c.value = *value;
-  return capture_file_conflict(o);
-}
-
-std::string dry_run_conflict(const EnvOptions& o) {
-  if (o.dry_run.empty()) {
-    if (!o.output.empty()) return "--output is for --dry-run: name a MIDI file to play";
-    if (!o.plot.empty()) return "--plot is for --dry-run: name a MIDI file to play";
-    return {};
-  }
-  if (o.duration_s > 0) {
-    return "--duration ends what is played with devices; --dry-run plays the song, and --tail "
-           "seconds more";
-  }
-  if (!o.output.empty() && !base::has_ending(o.output, ".mid") &&
-      !base::has_ending(o.output, ".csv") && !base::has_ending(o.output, ".wav")) {
-    return "--output: '" + o.output + "' ends neither in .mid nor in .csv nor in .wav";
-  }
-  if (!o.plot.empty() && !base::has_ending(o.plot, ".svg")) {
-    return "--plot: '" + o.plot + "' does not end in .svg";
-  }
-  std::vector<command_line::NamedFile> inputs = {{"--dry-run", o.dry_run}}, outputs;
-  for (const std::string& patch : o.patches) inputs.push_back({"a patch,", patch});
-  if (!o.calibration.empty()) inputs.push_back({"--calibration", o.calibration});
-  if (!o.output.empty()) outputs.push_back({"--output", o.output});
-  if (!o.plot.empty()) outputs.push_back({"--plot", o.plot});
-  return command_line::overlap(inputs, outputs);
-}
-
-/// What is wrong with values that are each good in themselves; empty when nothing is.
-std::string conflict(EnvOptions& o) {
-  if (o.list) return {};
-  if (!o.capture.word.empty()) return capture_conflict(o);
-  if (!o.capture.from.empty()) return "--from is for --capture";
-  if (o.patches.empty())
-    return "there is no PATCH to play and nothing to --capture; --list shows MIDI inputs and "
-           "outputs";
-  for (const std::string& patch : o.patches) {
-    if (is_midi_file(patch)) {
-      return "'" + patch + "' is named as a MIDI file; those go behind --dry-run";
-    }
-  }
-  return dry_run_conflict(o);
-}
-
 }  // namespace
 
 CommandLine read_command_line(int argc, char** argv) {
@@ -264,8 +174,9 @@ CommandLine read_command_line(int argc, char** argv) {
   add_devices(app, options);
   add_dry_run(app, options);
   add_capture(app, options);
+  const IsGiven is_given = [&app](const char* option) { return app.count(option) > 0; };
   line.exit_code =
-      command_line::read_words(app, argc, argv, [&options] { return conflict(options); });
+      command_line::read_words(app, argc, argv, [&] { return conflict(options, is_given); });
   return line;
 }
 

@@ -2,13 +2,11 @@
 #include "planner.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <utility>
 
 #include <pthread.h>
 #include <sched.h>
-#include <time.h>
 
 #include "knotwave/io/audio_device.h"
 
@@ -16,6 +14,7 @@ namespace knotwave::env {
 namespace {
 
 constexpr std::int64_t kStepNs = 500'000;
+constexpr std::int64_t kStillStepNs = 10'000'000;  // what is caught up when a note comes
 constexpr std::int64_t kShowNs = 250'000'000;
 constexpr std::size_t kMostKept = 1 << 20;  // 5 minutes of a MIDI cable
 constexpr int kPriority = 15;               // below the sender's
@@ -23,14 +22,6 @@ constexpr int kPriority = 15;               // below the sender's
 // 6 samples of 48 kHz are 125 us.
 constexpr std::int64_t kPeriodNs = 125'000, kPeriodSamples = 6;
 static_assert(kClockHz * kPeriodNs == kPeriodSamples * std::int64_t{1'000'000'000});
-
-void sleep_until(std::int64_t time_ns) {
-  timespec until{};
-  until.tv_sec = static_cast<time_t>(time_ns / 1'000'000'000);
-  until.tv_nsec = static_cast<long>(time_ns % 1'000'000'000);
-  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
-  }
-}
 
 }  // namespace
 
@@ -63,6 +54,7 @@ Planner::Planner(const Config& config, engine::EnvelopeGenerator& generator, io:
 
 Planner::~Planner() {
   must_end_ = true;
+  sleeper_.wake();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -74,6 +66,7 @@ void Planner::message(const base::MidiEvent& event, std::int64_t time_ns) noexce
   Input& input = inputs_[event.port % inputs_.size()];
   input.notes.heard(event);
   if (!input.queue.push(event, time_ns)) dropped_in_.fetch_add(1, std::memory_order_relaxed);
+  sleeper_.wake();
 }
 
 void Planner::port_lost(int port) noexcept {
@@ -86,6 +79,7 @@ void Planner::port_lost(int port) noexcept {
     event.port = static_cast<std::uint8_t>(port);
     input.queue.push(event, io::steady_clock_ns());
   });
+  sleeper_.wake();
 }
 
 void Planner::run() {
@@ -108,8 +102,13 @@ void Planner::run() {
       }
       show_ns = now_ns + kShowNs;
     }
-    next_ns = std::max(next_ns + kStepNs, now_ns);
-    sleep_until(next_ns);
+    if (generator_.is_still()) {
+      sleeper_.sleep_until(now_ns + kStillStepNs);
+      next_ns = io::steady_clock_ns();
+    } else {
+      next_ns = std::max(next_ns + kStepNs, now_ns);
+      io::sleep_through(next_ns);
+    }
   }
 }
 
@@ -122,6 +121,7 @@ void Planner::step(std::int64_t now_ns) {
   }
   generator_.advance(sample_time(now_ns, begin_ns_).sample, *this);
   flush_osc();
+  if (std::exchange(has_sent_, false)) sender_.wake();
 }
 
 void Planner::take_inputs(std::int64_t now_ns) {
@@ -161,6 +161,7 @@ void Planner::show(const Shown& shown) noexcept {
 }
 
 void Planner::midi(int port, const base::MidiEvent& event) KNOTWAVE_RT {
+  has_sent_ = true;
   sender_.push(port, event, steady_time(event.time, begin_ns_) + config_.latency_ns);
   Shown shown{.time = event.time, .port = port};
   std::copy_n(event.bytes, 3, shown.bytes);

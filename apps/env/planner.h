@@ -17,6 +17,7 @@
 #include "knotwave/io/midi_queue.h"
 #include "knotwave/io/midi_sender.h"
 #include "knotwave/io/osc_output.h"
+#include "knotwave/io/sleeper.h"
 
 #include "port_notes.h"
 #include "sent_files.h"
@@ -55,9 +56,15 @@ class Planner final : public io::MidiListener, private engine::GeneratorSink {
 
   void start();
   /// Whoever hears this port came back: he is told every value again. [control]
-  void say_again(int port) { again_ports_.fetch_or(1u << port); }
+  void say_again(int port) {
+    again_ports_.fetch_or(1u << port);
+    sleeper_.wake();
+  }
   /// The generator goes to rest; is_at_rest() tells when it is there. [control]
-  void go_to_rest() { must_rest_ = true; }
+  void go_to_rest() {
+    must_rest_ = true;
+    sleeper_.wake();
+  }
   bool is_at_rest() const { return is_at_rest_; }
 
   /// As of a quarter of a second ago. [control]
@@ -104,6 +111,8 @@ class Planner final : public io::MidiListener, private engine::GeneratorSink {
 
   mutable std::mutex mutex_;
   std::vector<engine::RouteStatus> routes_;
+  io::Sleeper sleeper_;
+  bool has_sent_ = false;  ///< to the sender, since it was woken
   std::atomic<bool> must_end_{false}, must_rest_{false}, is_at_rest_{false};
   std::thread thread_;
 };

@@ -50,6 +50,7 @@ void HeldState::add(const engine::JournalRecord& record) {
       break;
     case Kind::install_bank:
     case Kind::position:  // every clock tells its own again
+    case Kind::set_note:  // of a note that is gone with its engine
       break;
   }
 }

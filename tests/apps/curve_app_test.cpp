@@ -87,13 +87,13 @@ TEST_F(CurveApp, TheHelpOfEvalShowsWhatItPrints) {
 
 TEST_F(CurveApp, ChecksEveryKindOfFileThatIsShipped) {
   std::vector<std::string> files = {"check"};
-  for (const char* folder : {"curves", "patches", "banks", "envelopes"}) {
-    for (const auto& entry : std::filesystem::directory_iterator(KNOTWAVE_SOURCE_DIR "/examples/" +
-                                                                 std::string(folder))) {
-      if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
-    }
+  const std::string examples = KNOTWAVE_SOURCE_DIR "/examples";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(examples)) {
+    const bool is_of_plugins = entry.path().parent_path().filename() == "plugins";  // their own
+    if (entry.path().extension() != ".toml" || is_of_plugins) continue;
+    files.push_back(entry.path().string());
   }
-  ASSERT_GT(files.size(), 20u);
+  ASSERT_GT(files.size(), 70u);
   const ProgramRun checked = run(files);
   EXPECT_EQ(checked.exit_code, 0) << checked.err;
   for (std::size_t i = 1; i < files.size(); ++i) {
@@ -112,6 +112,19 @@ TEST_F(CurveApp, ChecksMidiLearnFiles) {
   const ProgramRun wrong = run({"check", path});
   EXPECT_EQ(wrong.exit_code, 1);
   EXPECT_THAT(wrong.err, HasSubstr(path + ":3:1: error: MIDI learn file: unknown key 'knob'"));
+}
+
+TEST_F(CurveApp, ChecksCalibrations) {
+  const std::string path = folder_.file("es9.toml");
+  const std::string head = "format = 1\nkind = \"calibration\"\n";
+  ASSERT_TRUE(base::write_file(path, head + "[[channels]]\nvolts_full_scale = 10.1\n"
+                                            "[[channels]]\noffset_v = 0.2\n"));
+  EXPECT_EQ(run({"check", path}).out, path + ": ok: calibration, 2 channels\n");
+  EXPECT_THAT(run({"info", path}).err, HasSubstr("a calibration holds no curves"));
+  ASSERT_TRUE(base::write_file(path, head + "[[channels]]\nvolts_full_scale = 0\n"));
+  const ProgramRun wrong = run({"check", path});
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.err, HasSubstr(path + ":4:20: error: channel 1: volts_full_scale"));
 }
 
 TEST_F(CurveApp, CheckNamesThePlaceOfAFaultAndGoesOn) {

@@ -242,6 +242,48 @@ TEST(EnvCapture, CountsInBeatsOfTheSong) {
   EXPECT_THAT(content(folder.file("b.toml")), HasSubstr("beats = 4\n"));
 }
 
+/// A smooth bend from a wheel of 7 bits, told every 5 ms when it moved.
+io::Song coarse_bend(int full) {
+  io::Song song;
+  song.track_count = 1;
+  int before = -1;
+  for (std::uint64_t tick = 0; tick < 3840; tick += 5) {
+    const double t = static_cast<double>(tick) / 960;
+    const int high = static_cast<int>(std::floor(64 + 63 * std::sin(2 * t) + 0.5));
+    if (high == before) continue;
+    before = high;
+    const int low = high == 127 ? full : 0;
+    song.events.push_back(
+        {tick, 0, {0xE0, static_cast<std::uint8_t>(low), static_cast<std::uint8_t>(high)}});
+  }
+  song.length_ticks = 3840;
+  return song;
+}
+
+TEST(EnvCapture, ABendWheelOfSevenBitsIsASmoothCurveOfFewPoints) {
+  const ScratchFolder folder;
+  for (const int full : {0, 127}) {
+    SCOPED_TRACE(full);
+    write_song(folder.file("in.mid"), coarse_bend(full));
+    const ProgramRun run =
+        capture({"bend", "--from", folder.file("in.mid"), "-o", folder.file("bend.toml")});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    std::printf("%s", run.out.c_str());
+    EXPECT_THAT(run.out, HasSubstr("within 64 steps asked"));
+    EXPECT_THAT(content(folder.file("bend.toml")), HasSubstr("told with 7 bits"));
+    const curves::NurbsCurve bend = curve_of(folder.file("bend.toml"));
+    EXPECT_LE(bend.point_count(), 24);
+    // From the first move on: within half a step of the wheel for the reduction, and as much for
+    // what the wheel rounded.
+    for (const auto& event : coarse_bend(full).events) {
+      const double told = event.bytes[2] * 128 + event.bytes[1];
+      const double u = std::min(static_cast<double>(event.tick) / 960, bend.u_max());
+      if (event.tick < 100 || u == bend.u_max()) continue;
+      EXPECT_NEAR(value_at(bend, u) * 16383, told, full == 0 ? 260 : 390) << event.tick;
+    }
+  }
+}
+
 TEST(EnvCapture, PlaysInAnEnvelopePatch) {
   const ScratchFolder folder;
   write_song(folder.file("in.mid"), song_of({{0, 1, 0}, {480, 1, 64}, {960, 1, 127}}, 2000));
@@ -407,6 +449,18 @@ TEST(EnvCapture, OfWhatMakesNoSenseIsUsage) {
       {{"cc1", "--from", "a.mid", "-o", "b.mid"}, "does not end in .toml"},
       {{"cc1", "--floor", "-60", "--from", "a.mid"}, "--floor is for loudness"},
       {{"peak", "--from", "a.wav", "--hop", "1"}, "longer than --window"},
+      {{"cc1", "--window", "0.1", "--from", "a.mid"}, "--window is for loudness"},
+      {{"cc1", "--hop", "0.01"}, "--hop is for loudness"},
+      {{"peak", "--from", "a.wav", "--bits", "7"}, "--bits is for MIDI"},
+      {{"peak", "--from", "a.wav", "--ramp", "0.1"}, "--ramp is for MIDI"},
+      {{"peak", "--from", "a.wav", "--whole"}, "--whole is for MIDI"},
+      {{"peak", "--from", "a.wav", "--channel", "2"}, "--channel is for"},
+      {{"cc1", "--from", "a.mid", "--midi-in", "x"}, "--midi-in is for what is live"},
+      {{"cc1", "--from", "a.mid", "--duration", "3"}, "--duration is for what is live"},
+      {{"cc1", "--cc", "74"}, "--cc is for playing"},
+      {{"cc1", "--thru"}, "--thru is for playing"},
+      {{"cc1", "--tail", "2"}, "--tail is for --dry-run"},
+      {{"cc1", "--calibration", "x.toml"}, "--calibration is for playing"},
       {{"cc1", "patch.toml"}, "goes behind --from"},
       {{"cc1", "--dry-run", "a.mid"}, "--from names what is captured"},
   };

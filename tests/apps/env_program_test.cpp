@@ -233,6 +233,8 @@ TEST(EnvProgram, OptionsChooseTheControllerAndTheChannel) {
 
 TEST(EnvProgram, WhatMakesNoSenseIsUsage) {
   const std::string patch = envelope("filter-swell"), song = score("first-light");
+  const std::string voltages = envelope("four-voltages");
+  const std::string calibration = kExamples + "calibration/two-outputs.toml";
   const std::pair<std::vector<std::string>, const char*> cases[] = {
       {{}, "there is no PATCH to play"},
       {{patch, "-o", "x.mid"}, "--output is for --dry-run"},
@@ -251,6 +253,14 @@ TEST(EnvProgram, WhatMakesNoSenseIsUsage) {
       {{patch, "--dry-run", song, "--calibration", "x.toml"},
        "--calibration is for control voltage"},
       {{patch, "--audio-device", "0"}, "--audio-device is for control voltage, and no patch has"},
+      {{voltages, "--dry-run", song, "--calibration", calibration},
+       "--calibration is for control voltage: a dry run writes that to -o FILE.wav"},
+      {{voltages, "--dry-run", song, "--calibration", calibration, "-o", "x.mid"},
+       "--calibration is for control voltage"},
+      {{patch, "--window", "1"}, "--window is for --capture"},
+      {{patch, "--dry-run", song, "--points", "9"}, "--points is for --capture"},
+      {{patch, "--whole"}, "--whole is for --capture"},
+      {{patch, "--tail", "3"}, "--tail is for --dry-run"},
       {{patch, "--osc", "nowhere"}, "neither a port from 1 to 65535 nor HOST:PORT"},
   };
   for (const auto& [words, message] : cases) {

@@ -205,6 +205,29 @@ TEST_F(EnvVoltage, ItComesAndGoesAlongARampOfHalfASecond) {
   EXPECT_LE(down, kTolerance);
 }
 
+TEST_F(EnvVoltage, ALostServerIsLookedForAndTheVoltageRampsInAgain) {
+  auto capture = std::make_unique<support::JackCapture>(std::size_t{1}, kMostFrames);
+  EnvProcess env(kFiveVolts, words(true));
+  ASSERT_TRUE(comes_to(*capture, 0, 0.5, 0)) << env.log();
+  server_.kill();
+  const auto has_said = [&env](const char* words) {
+    return seconds_until([&] { return env.log().find(words) != std::string::npos; }, 15) < 15;
+  };
+  ASSERT_TRUE(has_said("it is looked for")) << env.log();
+  capture.reset();
+  ASSERT_TRUE(server_.restart()) << server_.log();
+  capture = std::make_unique<support::JackCapture>(std::size_t{1}, kMostFrames);
+  ASSERT_TRUE(has_said("control voltage is back")) << env.log();
+  ASSERT_TRUE(comes_to(*capture, 0, 0.5, 0)) << env.log();
+  const Samples all = capture->channel(0);
+  const auto top = std::find(all.begin(), all.end(), 0.5F);
+  EXPECT_GE(static_cast<std::size_t>(top - all.begin()) - first_that_differs(all, 0),
+            24000u - 20 * 256);
+  env.program().end(SIGINT);
+  EXPECT_TRUE(comes_to(*capture, 0, 0, 0)) << "it goes to rest as before";
+  EXPECT_TRUE(std::none_of(all.begin(), top, [](float s) { return s > 0.5F; }));
+}
+
 /// Amplitude of a sine in the last `cycles` of a channel.
 double amplitude(const Samples& samples, double hz, double seconds) {
   const auto n = static_cast<std::size_t>(seconds * kRate);

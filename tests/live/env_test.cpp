@@ -243,6 +243,30 @@ TEST_F(EnvOnJack, AReceiverThatComesBackIsToldTheValueAgain) {
   EXPECT_THAT(env.log(), HasSubstr("is back"));
 }
 
+TEST_F(EnvOnJack, TwoOfThemDoNotListenToEachOtherUnlessToldTo) {
+  const auto one = playing({"--midi-api", "jack"}), two = playing({"--midi-api", "jack"});
+  EXPECT_THAT(two->log(), HasSubstr("is left out"));
+  EnvProcess third(kPatch, {"--midi-api", "jack", "--midi-in", "knotwave-env"});
+  JackReceiver board("board");
+  ASSERT_LT(seconds_until([&] { return board.sources_of("Knotwave-env").size() >= 3; }, 15), 15);
+  // Each has connected what it wants by now or does so within a poll.
+  std::this_thread::sleep_for(1s);
+  std::size_t heard_by_others = 0;
+  for (const std::string& source : board.sources_of("Knotwave-env")) {
+    heard_by_others += board.connections_of(source).size();
+  }
+  EXPECT_EQ(heard_by_others, 2u) << "the third hears the other two, and nobody else any";
+}
+
+TEST_F(EnvOnJack, ItsOwnInputIsNotCountedWhereAKeyboardIsNamed) {
+  JackReceiver board("board");
+  const support::JackMidiSender keys("", {{48000, {0x90, 60, 100}}});
+  EnvProcess env(kPatch, {"--midi-api", "jack", "--midi-in", "sender"});
+  ASSERT_LT(seconds_until([&] { return env.log().find("\nIN ") != std::string::npos; }, 15), 15)
+      << env.log();
+  EXPECT_THAT(env.log(), HasSubstr("\nIN sender:out any ch note -> swell"));
+}
+
 TEST_F(EnvOnJack, NamesThePortsThereAreWhereOneIsWrong) {
   JackReceiver board("board");
   const support::ProgramRun run = support::run_program(

@@ -43,16 +43,25 @@ class JackReceiver {
   bool connect(const std::string& source) {
     return jack_connect(client_, source.c_str(), jack_port_name(port_)) == 0;
   }
+  /// MIDI outputs of clients whose names begin with `client`.
+  std::vector<std::string> sources_of(const std::string& client) const {
+    std::vector<std::string> all =
+        taken(jack_get_ports(client_, nullptr, JACK_DEFAULT_MIDI_TYPE, JackPortIsOutput));
+    std::erase_if(all, [&](const std::string& port) { return !port.starts_with(client); });
+    return all;
+  }
+  /// Who hears a port of anybody.
+  std::vector<std::string> connections_of(const std::string& port) const {
+    jack_port_t* const found = jack_port_by_name(client_, port.c_str());
+    if (found == nullptr) return {};
+    return taken(jack_port_get_all_connections(client_, found));
+  }
   /// The port of a client whose name begins with `client` that has `word` in its own.
   bool connect_to_client(const std::string& client, const std::string& word) {
-    const char** const names =
-        jack_get_ports(client_, nullptr, JACK_DEFAULT_MIDI_TYPE, JackPortIsOutput);
     bool is_done = false;
-    for (const char* const* name = names; name != nullptr && *name != nullptr; ++name) {
-      const std::string port = *name;
-      is_done |= port.starts_with(client) && port.find(word) != std::string::npos && connect(port);
+    for (const std::string& port : sources_of(client)) {
+      is_done |= port.find(word) != std::string::npos && connect(port);
     }
-    jack_free(names);
     return is_done;
   }
   ~JackReceiver() {
@@ -74,6 +83,14 @@ class JackReceiver {
   }
 
  private:
+  static std::vector<std::string> taken(const char** names) {
+    std::vector<std::string> all;
+    for (const char* const* name = names; name != nullptr && *name != nullptr; ++name) {
+      all.emplace_back(*name);
+    }
+    jack_free(names);
+    return all;
+  }
   int process(jack_nframes_t frames) {
     jack_nframes_t frame = 0;
     jack_time_t begin_us = 0, next_us = 0;

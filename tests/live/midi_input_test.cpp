@@ -267,6 +267,17 @@ TEST_F(MidiInputsOnJack, OutputsOfThisProgramAreLeftAlone) {
   EXPECT_EQ(listener_.heard()[0].bytes[0], 0x91);
 }
 
+TEST_F(MidiInputsOnJack, WithAllWhatIsLeftOutIsToldAndHeardOnlyByItsName) {
+  Keyboard another("Looper-1"), keyboard("board");
+  open({.ports = {}, .left_out = "looper"});
+  ASSERT_TRUE(opens_within(3s, "board:keys"));
+  EXPECT_FALSE(is_open("Looper-1:keys"));
+  EXPECT_THAT(inputs_->notes(), Contains(HasSubstr("'Looper-1:keys' is left out")));
+  inputs_.reset();
+  open({.ports = {"looper"}, .left_out = "looper"});
+  EXPECT_TRUE(opens_within(3s, "Looper-1:keys"));
+}
+
 TEST_F(MidiInputsOnJack, OthersConnectToOurPortAndItsNotesEndWhenTheyGo) {
   open({.ports = {}, .client_name = "Synth"});
   ASSERT_TRUE(is_open("Synth"));

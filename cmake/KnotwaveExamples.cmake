@@ -8,7 +8,18 @@ set(knotwave_example_patches
   hat-closed hat-open jingle keys kick leaning-bell mono-lead morph-pad muted-drum organ pluck reed
   ride scratch shaker snare strings tom vibraslap voice whistle wind zap)
 set(knotwave_example_curves
-  arc bend decay drums envelopes glide lfo shapers surfaces velocity waves)
+  arc bend crossfades cycles decay drums envelopes glide lfo shapers surfaces velocity waves)
+# By plugin (the word before the first dash), in the order of hosts' menus: new ones at the end of theirs.
+set(knotwave_example_plugins
+  shaper-warm-valve shaper-soft-peaks shaper-loud-and-square shaper-folder shaper-straight-to-fold
+  shaper-octave-up shaper-three-bits shaper-own-diode
+  crossfade-equal-power crossfade-duck-under-voice crossfade-to-the-beat crossfade-there-and-back
+  crossfade-cut crossfade-gallop crossfade-own-law
+  curve-trance-gate curve-pump curve-half-gate curve-swell curve-auto-pan
+  curve-filter-wobble curve-stepped-filter curve-stutter curve-rising-sweep curve-struck-by-notes
+  curve-own-heartbeat)
+set(knotwave_example_envelopes
+  drum-duck filter-swell four-voltages mpe-pressure pitch-adsr tempo-tremolo)
 set(knotwave_example_scores
   bwv846_prelude first-light groove pachelbel_canon petzold_minuet)
 

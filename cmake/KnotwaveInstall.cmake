@@ -1,4 +1,4 @@
-# cmake --install, in two components. development: find_package(knotwave COMPONENTS ...) and pkg-config for
+# cmake --install, in components. plugins: see plugins/CMakeLists.txt. development: find_package(knotwave COMPONENTS ...) and pkg-config for
 # every module. runtime, where the programs are built: these, and what goes with them.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -62,10 +62,13 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/knotwave-config-version.c
 install(FILES ${PROJECT_BINARY_DIR}/knotwave-config.cmake
   ${PROJECT_BINARY_DIR}/knotwave-config-version.cmake DESTINATION ${package_dir} COMPONENT development)
 
-# All that the two components install.
+# All that the components install.
 add_custom_target(installable)
 list(TRANSFORM modules PREPEND knotwave_ OUTPUT_VARIABLE libraries)
 add_dependencies(installable ${libraries})
+if(TARGET plugins)
+  add_dependencies(installable plugins)
+endif()
 
 get_property(apps GLOBAL PROPERTY KNOTWAVE_APPS)
 if(NOT apps)
@@ -93,7 +96,7 @@ endif()
 
 # The folders stay beside each other: files name one another as ../patches/bell.toml.
 set(examples_dir ${CMAKE_INSTALL_DATADIR}/knotwave/examples)
-foreach(folder banks calibration curves envelopes musicians patches scores sounds tunings)
+foreach(folder banks calibration curves envelopes musicians patches plugins scores sounds tunings)
   if(EXISTS ${PROJECT_SOURCE_DIR}/examples/${folder})
     install(DIRECTORY examples/${folder} DESTINATION ${examples_dir} COMPONENT runtime FILES_MATCHING
       PATTERN "*.toml" PATTERN "*.mid" PATTERN "*.scl" PATTERN "*.kbm" PATTERN "*.wav" PATTERN "*.flac")

@@ -1,10 +1,13 @@
-# cpack makes two Debian packages of what cmake --install installs: knotwave, the programs and what goes with
-# them, and knotwave-dev, to build with the libraries. DebianFiles.cmake adds what Debian wants besides.
+# cpack makes Debian packages of what cmake --install installs: knotwave, the programs and what goes with them,
+# knotwave-plugins, and knotwave-dev, to build with the libraries. DebianFiles.cmake adds what Debian wants besides.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME knotwave)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "Knotwave developers <knotwave@example.invalid>")
 set(CPACK_COMPONENTS_ALL runtime development)
+if(KNOTWAVE_HAVE_CLAP OR KNOTWAVE_HAVE_DPF)
+  list(APPEND CPACK_COMPONENTS_ALL plugins)
+endif()
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_STRIP_FILES ON)
@@ -20,13 +23,21 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has one of its own
 
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME knotwave)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION sound)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS knotwave-dev)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "knotwave-plugins, knotwave-dev")
 set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "synthesizer whose sounds are NURBS curves
 A curve, kept as a few control points in a text file, can be an envelope, an
 LFO, one cycle of a waveform, a row of a morphing surface, a crossfade law or
 a waveshaper. The programs play such sounds live from MIDI and OSC, render MIDI
 files, to the same samples on every machine, and check, draw, edit and fit
 curves.")
+
+set(CPACK_DEBIAN_PLUGINS_PACKAGE_NAME knotwave-plugins)
+set(CPACK_DEBIAN_PLUGINS_PACKAGE_SECTION sound)
+set(CPACK_DEBIAN_PLUGINS_PACKAGE_SUGGESTS knotwave)
+set(CPACK_DEBIAN_PLUGINS_PACKAGE_ENHANCES ardour)
+set(CPACK_DEBIAN_PLUGINS_DESCRIPTION "NURBS curves as sound, plugins for LV2, CLAP and VST3
+A synthesizer whose sounds are NURBS curves, and what else of Knotwave works in
+a host, with every patch inside and the same samples as the programs give.")
 
 # The shared library is that of the C interface: none of the programs uses it.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME knotwave-dev)

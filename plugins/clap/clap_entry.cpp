@@ -5,28 +5,38 @@
 #include <clap/entry.h>
 #include <clap/plugin-factory.h>
 
-#include "clap_instrument.h"
+#include "knotwave/plugins/plugin_list.h"
+
+#include "clap_later.h"
+#include "clap_plugin.h"
 
 namespace {
 
-using knotwave::plugins::kClapInstrument;
+using namespace knotwave::plugins;
 
-std::uint32_t count(const clap_plugin_factory*) { return 1; }
+std::uint32_t count(const clap_plugin_factory*) {
+  return static_cast<std::uint32_t>(all_plugins().size());
+}
 const clap_plugin_descriptor* descriptor(const clap_plugin_factory*, std::uint32_t index) {
-  return index == 0 ? &kClapInstrument : nullptr;
+  return index < all_plugins().size() ? &clap_descriptor(index) : nullptr;
 }
 const clap_plugin* create(const clap_plugin_factory*, const clap_host* host, const char* id) {
   if (host == nullptr || id == nullptr || !clap_version_is_compatible(host->clap_version)) {
     return nullptr;
   }
-  if (std::strcmp(id, kClapInstrument.id) != 0) return nullptr;
-  return knotwave::plugins::create_clap_instrument(host);
+  for (std::size_t i = 0; i < all_plugins().size(); ++i) {
+    if (std::strcmp(id, clap_descriptor(i).id) == 0) return create_clap_plugin(i, host);
+  }
+  return nullptr;
 }
 constexpr clap_plugin_factory kFactory{count, descriptor, create};
 
 bool init(const char*) { return true; }
 void deinit() {}
 const void* factory(const char* id) {
+  for (const char* const discovery : kClapPresetDiscovery) {
+    if (std::strcmp(id, discovery) == 0) return kClapShowsPresets;
+  }
   return std::strcmp(id, CLAP_PLUGIN_FACTORY_ID) == 0 ? &kFactory : nullptr;
 }
 

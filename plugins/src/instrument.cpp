@@ -7,7 +7,7 @@
 
 #include "knotwave/engine/channel_state.h"
 #include "knotwave/plugins/factory.h"
-#include "knotwave/plugins/parameters.h"
+#include "knotwave/plugins/plugin_list.h"
 
 namespace knotwave::plugins {
 namespace {
@@ -22,27 +22,17 @@ constexpr int kNoMessages = 16;
 constexpr int kNoJournal = 16;
 constexpr double kNoTapSeconds = 0.01;
 
-Event parameter_event(std::size_t place, double value, base::SampleTime time) KNOTWAVE_RT {
-  Event event;
-  event.kind = Event::Kind::set_target;
-  event.midi.time = time;
-  event.slot = static_cast<std::uint16_t>(parameters()[place].slot);
-  event.number = value;
-  event.every_channel = true;
-  return event;
-}
-
 }  // namespace
 
-Instrument::Instrument(const InstrumentConfig& config) : config_(config), events_(kEventsAtOnce) {
-  for (std::size_t i = 0; i < kMostParameters; ++i) {
-    wanted_[i].store(i < parameters().size() ? parameters()[i].initial : 0);
-  }
+Instrument::Instrument(const InstrumentConfig& config)
+    : config_(config), events_(kEventsAtOnce), ended_(kEventsAtOnce) {
   if (auto spec = engine::read_bank(factory_presets()[0].path, factory_files())) {
     spec_ = *std::move(spec);
   }
 }
 Instrument::~Instrument() = default;
+
+const PluginInfo& Instrument::info() const { return instrument_info(); }
 
 Result<void> Instrument::load(engine::BankSpec spec) {
   for (const engine::PatchSpec& patch : spec.patches) {
@@ -95,9 +85,8 @@ Result<void> Instrument::activate(double rate_hz) {
   auto live = engine::LiveEngine::create(config, std::move(program_));
   if (!live) return live.error();
   live_ = *std::move(live);
-  heard_.fill(0);
-  for (std::size_t i = 0; i < parameters().size(); ++i) heard_[i] = parameters()[i].initial;
-  has_news_.store(true);
+  values_.forget_heard();
+  modulation_.fill(0);
   tempo_microseconds_ = 500000;
   is_playing_ = is_song_due_ = false;
   return {};
@@ -110,29 +99,32 @@ void Instrument::collect() {
 }
 
 void Instrument::set_parameter(std::size_t place, double value) KNOTWAVE_RT {
-  if (place >= parameters().size()) return;
-  const Parameter& parameter = parameters()[place];
-  const double held =
-      value == value ? std::clamp(value, parameter.low, parameter.high) : parameter.initial;
-  wanted_[place].store(held, std::memory_order_relaxed);
-  has_news_.store(true, std::memory_order_release);
+  values_.set(place, value);
 }
 
-double Instrument::parameter(std::size_t place) const KNOTWAVE_RT {
-  return place < parameters().size() ? wanted_[place].load(std::memory_order_relaxed) : 0;
+double Instrument::parameter(std::size_t place) const KNOTWAVE_RT { return values_.get(place); }
+
+void Instrument::begin(const Block& block) KNOTWAVE_RT {
+  begin({block.out[0], block.frames}, {block.out[1], block.frames});
 }
 
 void Instrument::begin(std::span<float> left, std::span<float> right) KNOTWAVE_RT {
   left_ = left;
   right_ = right;
   done_ = event_count_ = 0;
-  if (!has_news_.exchange(false, std::memory_order_acquire)) return;
-  for (std::size_t i = 0; i < parameters().size(); ++i) {
-    const double value = wanted_[i].load(std::memory_order_relaxed);
-    if (value == heard_[i]) continue;
-    heard_[i] = value;
-    push(parameter_event(i, value, {}));
-  }
+  ended_count_ = 0;
+  values_.take_news([this](std::size_t place, double) { push_parameter(place, 0); });
+}
+
+/// What the host automates and what it modulates, as one number of every voice.
+void Instrument::push_parameter(std::size_t place, std::int64_t sample) KNOTWAVE_RT {
+  Event event;
+  event.kind = Event::Kind::set_target;
+  event.midi.time.sample = sample;
+  event.slot = static_cast<std::uint16_t>(table()[place].slot);
+  event.number = values_.heard(place) + modulation_[place];
+  event.every_channel = true;
+  push(event);
 }
 
 /// The song's position goes before what comes later.
@@ -165,10 +157,29 @@ void Instrument::place(const Event& event) KNOTWAVE_RT {
 void Instrument::add(const Event& event) KNOTWAVE_RT { push(event); }
 
 void Instrument::add_parameter(std::size_t place, double value, std::int64_t sample) KNOTWAVE_RT {
-  if (place >= parameters().size()) return;
-  set_parameter(place, value);
-  heard_[place] = wanted_[place].load(std::memory_order_relaxed);
-  push(parameter_event(place, heard_[place], {sample, 0}));
+  if (place >= table().size()) return;
+  values_.set_heard(place, value);
+  push_parameter(place, sample);
+}
+
+void Instrument::add_modulation(std::size_t place, double amount, const NoteAddress& notes,
+                                std::int64_t sample) KNOTWAVE_RT {
+  if (place >= table().size() || amount != amount) return;
+  if (notes.is_every()) {
+    modulation_[place] = amount;
+    return push_parameter(place, sample);
+  }
+  Event event;
+  event.kind = Event::Kind::set_note;
+  event.midi.time.sample = sample;
+  event.midi.bytes[0] = static_cast<std::uint8_t>(std::max(notes.channel, 0) & 15);
+  event.midi.bytes[1] =
+      notes.key < 0 ? std::uint8_t{Event::kEveryKey} : static_cast<std::uint8_t>(notes.key & 127);
+  event.every_channel = notes.channel < 0;
+  event.note = notes.note;
+  event.slot = static_cast<std::uint16_t>(table()[place].slot);
+  event.number = amount;
+  push(event);
 }
 
 void Instrument::add_transport(const Transport& transport, std::int64_t sample) KNOTWAVE_RT {
@@ -211,6 +222,9 @@ void Instrument::render_until(std::size_t sample) KNOTWAVE_RT {
   if (n == 0) return;
   live_->process(0, std::span(events_).first(event_count_), left_.subspan(done_, n),
                  right_.subspan(done_, n));
+  for (const engine::EndedNote& note : live_->ended_notes()) {
+    if (ended_count_ < ended_.size()) ended_[ended_count_++] = note;
+  }
   event_count_ = 0;
   done_ = sample;
 }

@@ -2,7 +2,6 @@
 // The instrument as text.
 #include "knotwave/engine/journal.h"
 #include "knotwave/plugins/instrument.h"
-#include "knotwave/plugins/parameters.h"
 
 namespace knotwave::plugins {
 namespace {
@@ -20,7 +19,7 @@ Error malformed(std::string message) {
 }
 
 std::size_t parameter_of_slot(std::uint32_t slot) {
-  const auto all = parameters();
+  const auto all = Instrument::table().all();
   std::size_t place = 0;
   while (place < all.size() && static_cast<std::uint32_t>(all[place].slot) != slot) ++place;
   return place;
@@ -34,7 +33,7 @@ Result<void> check(const Journal& journal) {
         record.time != base::SampleTime{}) {
       return malformed("only targets of every channel at time 0 may be in it");
     }
-    if (parameter_of_slot(record.index) == parameters().size()) {
+    if (parameter_of_slot(record.index) == Instrument::table().size()) {
       return malformed("there is no parameter for slot " + std::to_string(record.index));
     }
   }
@@ -47,12 +46,12 @@ std::string Instrument::state() const {
   Journal journal;
   journal.max_voices = config_.max_voices;
   journal.banks.push_back({spec_.source_name, spec_.texts, {}});
-  for (std::size_t i = 0; i < parameters().size(); ++i) {
-    if (parameter(i) == parameters()[i].initial) continue;
+  for (std::size_t i = 0; i < table().size(); ++i) {
+    if (parameter(i) == table()[i].initial) continue;
     JournalRecord& record = journal.records.emplace_back();
     record.kind = Event::Kind::set_target;
     record.every_channel = true;
-    record.index = static_cast<std::uint32_t>(parameters()[i].slot);
+    record.index = static_cast<std::uint32_t>(table()[i].slot);
     record.number = parameter(i);
   }
   return engine::write_journal(journal);
@@ -66,12 +65,12 @@ Result<void> Instrument::load_state(std::string_view text) {
   auto spec = engine::read_bank(bank.path, bank.files);
   if (!spec) return spec.error();
   if (auto loaded = load(*std::move(spec)); !loaded) return loaded.error();
-  std::array<double, kMostParameters> values{};
-  for (std::size_t i = 0; i < parameters().size(); ++i) values[i] = parameters()[i].initial;
+  std::array<double, ParameterValues::kMost> values{};
+  for (std::size_t i = 0; i < table().size(); ++i) values[i] = table()[i].initial;
   for (const JournalRecord& record : journal->records) {
     values[parameter_of_slot(record.index)] = record.number;
   }
-  for (std::size_t i = 0; i < parameters().size(); ++i) set_parameter(i, values[i]);
+  for (std::size_t i = 0; i < table().size(); ++i) set_parameter(i, values[i]);
   return {};
 }
 

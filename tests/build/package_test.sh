@@ -37,7 +37,7 @@ tree() {
     [ "$program" != knotwave-synth ] || printf 'usr/share/%s\n' applications/knotwave-synth.desktop \
       icons/hicolor/scalable/apps/knotwave-synth.svg
   done
-  for folder in banks calibration curves envelopes musicians patches scores sounds tunings; do
+  for folder in banks calibration curves envelopes musicians patches plugins scores sounds tunings; do
     [ ! -d "$source/examples/$folder" ] || tree "examples/$folder" "usr/share/knotwave/examples/$folder" toml mid scl kbm wav flac
   done
   tree docs usr/share/doc/knotwave/docs md svg toml
@@ -52,8 +52,13 @@ tree() {
   for folder in tutorial c gallery; do tree "examples/$folder" "usr/share/knotwave/examples/$folder" c cpp h; done
   printf 'usr/share/doc/knotwave-dev/%s\n' changelog.gz copyright
 } >"$work/knotwave-dev"
+{
+  printf 'usr/share/doc/knotwave-plugins/%s\n' changelog.gz copyright
+  (cd "$build/plugins" && find clap lv2 vst3 -type f -printf 'usr/lib/%p\n')
+} >"$work/knotwave-plugins"
+[ "$(grep -c '^usr/lib/' "$work/knotwave-plugins")" -ge 6 ] || complain "plugins are missing in $build/plugins"
 
-for package in knotwave knotwave-dev; do
+for package in knotwave knotwave-dev knotwave-plugins; do
   deb=$(echo "$build/packages/${package}"_[0-9]*.deb)
   root=$work/unpacked/$package
   mkdir -p "$root"
@@ -80,7 +85,9 @@ for package in knotwave knotwave-dev; do
     grep -q "^$field: ." "$work/$package.control/control" || complain "$package: no $field"
   done
 done
-for binary in "$work"/unpacked/knotwave/usr/bin/* "$work/unpacked/knotwave-dev/$lib/libknotwave_curves_c.so.1"; do
+mapfile -t modules < <(find "$work/unpacked/knotwave-plugins" -name '*.so' -o -name '*.clap')
+[ "${#modules[@]}" -ge 3 ] || complain "knotwave-plugins holds only ${#modules[@]} modules"
+for binary in "$work"/unpacked/knotwave/usr/bin/* "$work/unpacked/knotwave-dev/$lib/libknotwave_curves_c.so.1" "${modules[@]}"; do
   [[ $(file "$binary") == *", stripped"* ]] || complain "$binary is not stripped"
 done
 for entry in "$source"/apps/desktop/*.desktop; do
@@ -95,7 +102,7 @@ for program in "${programs[@]}"; do
   [[ $("$program" --version) == "$program "* ]] || complain "$program --version"
 done
 cd "$work/unpacked/knotwave/usr/share/knotwave"
-find examples -name '*.toml' ! -path '*/calibration/*' -print0 | xargs -0 knotwave-curve check >"$work/checked" || { cat "$work/checked"; complain "a shipped example has a fault"; }
+find examples -name '*.toml' ! -path '*/plugins/*' -print0 | xargs -0 knotwave-curve check >"$work/checked" || { cat "$work/checked"; complain "a shipped example has a fault"; }
 count=0
 while IFS= read -r command; do
   count=$((count + 1))

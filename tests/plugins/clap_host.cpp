@@ -37,6 +37,41 @@ ClapEvent clap_note(std::uint32_t sample, int type, int channel, int key, double
   return event;
 }
 
+ClapEvent clap_numbered(std::uint32_t sample, int type, std::int32_t note, int channel, int key,
+                        double velocity) {
+  ClapEvent event = clap_note(sample, type, channel, key, velocity);
+  event.note.note_id = note;
+  return event;
+}
+
+ClapEvent clap_expression(std::uint32_t sample, int what, std::int32_t note, int channel, int key,
+                          double value) {
+  ClapEvent event{};
+  event.expression = {
+      header(sample, CLAP_EVENT_NOTE_EXPRESSION, sizeof(clap_event_note_expression)),
+      what,
+      note,
+      -1,
+      static_cast<std::int16_t>(channel),
+      static_cast<std::int16_t>(key),
+      value};
+  return event;
+}
+
+ClapEvent clap_modulation(std::uint32_t sample, clap_id id, std::int32_t note, int channel, int key,
+                          double amount) {
+  ClapEvent event{};
+  event.mod = {header(sample, CLAP_EVENT_PARAM_MOD, sizeof(clap_event_param_mod)),
+               id,
+               nullptr,
+               note,
+               -1,
+               static_cast<std::int16_t>(channel),
+               static_cast<std::int16_t>(key),
+               amount};
+  return event;
+}
+
 ClapEvent clap_value(std::uint32_t sample, clap_id id, double value) {
   ClapEvent event{};
   event.value = {header(sample, CLAP_EVENT_PARAM_VALUE, sizeof(clap_event_param_value)),
@@ -92,31 +127,94 @@ void ClapPlugin::stop() {
 
 clap_process_status ClapPlugin::process(const std::vector<ClapEvent>& events, std::size_t frames,
                                         StereoSound& out, const clap_event_transport* transport) {
-  out.left.assign(frames, 9);
-  out.right.assign(frames, 9);
-  float* channels[] = {out.left.data(), out.right.data()};
-  clap_audio_buffer buffer{};
-  buffer.data32 = channels;
-  buffer.channel_count = 2;
+  Channels channels;
+  const auto status =
+      process(events, frames, Channels(this->channels(true), std::vector<float>(frames)), channels,
+              transport);
+  out.left = channels.at(0);
+  out.right = channels.at(1);
+  return status;
+}
+
+std::size_t ClapPlugin::channels(bool is_input) const {
+  const auto* ports = extension<clap_plugin_audio_ports>(CLAP_EXT_AUDIO_PORTS);
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < ports->count(plugin_, is_input); ++i) {
+    clap_audio_port_info info{};
+    EXPECT_TRUE(ports->get(plugin_, i, is_input, &info));
+    count += info.channel_count;
+  }
+  return count;
+}
+
+namespace {
+
+/// The buffers of all ports on one side.
+struct Buffers {
+  std::vector<clap_audio_buffer> ports;
+  std::vector<float*> channels;
+};
+Buffers buffers_of(const ClapPlugin& plugin, bool is_input, Channels& samples) {
+  const auto* ports = plugin.extension<clap_plugin_audio_ports>(CLAP_EXT_AUDIO_PORTS);
+  Buffers buffers;
+  for (auto& channel : samples) buffers.channels.push_back(channel.data());
+  std::size_t next = 0;
+  for (std::uint32_t i = 0; i < ports->count(plugin.get(), is_input); ++i) {
+    clap_audio_port_info info{};
+    EXPECT_TRUE(ports->get(plugin.get(), i, is_input, &info));
+    clap_audio_buffer& buffer = buffers.ports.emplace_back();
+    buffer.data32 = buffers.channels.data() + next;
+    buffer.channel_count = info.channel_count;
+    next += info.channel_count;
+  }
+  return buffers;
+}
+bool may_share(const ClapPlugin& plugin) {
+  const auto* ports = plugin.extension<clap_plugin_audio_ports>(CLAP_EXT_AUDIO_PORTS);
+  clap_audio_port_info info{};
+  return ports->get(plugin.get(), 0, true, &info) && info.in_place_pair != CLAP_INVALID_ID;
+}
+
+}  // namespace
+
+clap_process_status ClapPlugin::process(const std::vector<ClapEvent>& events, std::size_t frames,
+                                        const Channels& in, Channels& out,
+                                        const clap_event_transport* transport, bool in_place) {
+  Channels heard = in;
+  out.assign(channels(false), std::vector<float>(frames, 9));
+  Buffers inputs = buffers_of(*this, true, heard), outputs = buffers_of(*this, false, out);
+  if (in_place && may_share(*this)) {
+    for (std::uint32_t i = 0; i < inputs.ports[0].channel_count; ++i) {
+      out[i] = in[i];
+      inputs.channels[i] = outputs.channels[i];
+    }
+  }
   using Events = std::vector<ClapEvent>;
-  clap_input_events in{};
-  in.ctx = const_cast<Events*>(&events);
-  in.size = [](const clap_input_events* list) {
+  clap_input_events from{};
+  from.ctx = const_cast<Events*>(&events);
+  from.size = [](const clap_input_events* list) {
     return static_cast<std::uint32_t>(static_cast<Events*>(list->ctx)->size());
   };
-  in.get = [](const clap_input_events* list, std::uint32_t i) -> const clap_event_header* {
+  from.get = [](const clap_input_events* list, std::uint32_t i) -> const clap_event_header* {
     return &(*static_cast<Events*>(list->ctx))[i].header;
   };
-  const clap_output_events none{
-      nullptr, [](const clap_output_events*, const clap_event_header*) { return true; }};
+  given_.clear();
+  const clap_output_events to{
+      &given_, [](const clap_output_events* list, const clap_event_header* event) {
+        ClapEvent& kept = static_cast<Events*>(list->ctx)->emplace_back();
+        std::memcpy(&kept, event, std::min<std::size_t>(event->size, sizeof kept));
+        return true;
+      }};
   clap_process block{};
   block.steady_time = -1;
   block.frames_count = static_cast<std::uint32_t>(frames);
   block.transport = transport;
-  block.audio_outputs = &buffer;
-  block.audio_outputs_count = 1;
-  block.in_events = &in;
-  block.out_events = &none;
+  block.audio_inputs = inputs.ports.data();
+  block.audio_inputs_count = static_cast<std::uint32_t>(inputs.ports.size());
+  block.audio_outputs = outputs.ports.data();
+  block.audio_outputs_count = static_cast<std::uint32_t>(outputs.ports.size());
+  block.in_events = &from;
+  block.out_events = &to;
   return plugin_->process(plugin_, &block);
 }
 

@@ -9,6 +9,7 @@
 
 #include <clap/entry.h>
 #include <clap/events.h>
+#include <clap/ext/audio-ports.h>
 #include <clap/ext/params.h>
 #include <clap/ext/state.h>
 #include <clap/plugin-factory.h>
@@ -26,8 +27,18 @@ union ClapEvent {
   clap_event_midi midi;
 };
 ClapEvent clap_note(std::uint32_t sample, int type, int channel, int key, double velocity);
+/// With the host's own number of the note.
+ClapEvent clap_numbered(std::uint32_t sample, int type, std::int32_t note, int channel, int key,
+                        double velocity);
+ClapEvent clap_expression(std::uint32_t sample, int what, std::int32_t note, int channel, int key,
+                          double value);
+ClapEvent clap_modulation(std::uint32_t sample, clap_id id, std::int32_t note, int channel, int key,
+                          double amount);
 ClapEvent clap_value(std::uint32_t sample, clap_id id, double value);
 ClapEvent clap_midi(std::uint32_t sample, int status, int one, int two);
+
+/// Those of all ports, one after the other.
+using Channels = std::vector<std::vector<float>>;
 
 struct StereoSound {
   std::vector<float> left, right;
@@ -59,6 +70,15 @@ class ClapPlugin {
   /// One call of process(): events of this block.
   clap_process_status process(const std::vector<ClapEvent>& events, std::size_t frames,
                               StereoSound& out, const clap_event_transport* transport = nullptr);
+  /// The same of any ports: `in` and `out` as the plugin says it has them, `frames` of `in` each.
+  /// With `in_place` the first ports share their buffers where the plugin says they may.
+  clap_process_status process(const std::vector<ClapEvent>& events, std::size_t frames,
+                              const Channels& in, Channels& out,
+                              const clap_event_transport* transport = nullptr,
+                              bool in_place = false);
+  /// What the plugin gave in the last process().
+  const std::vector<ClapEvent>& given() const { return given_; }
+  std::size_t channels(bool is_input) const;
   /// `events` by their sample of the whole sound, in blocks of `block`.
   StereoSound play(const std::vector<ClapEvent>& events, std::size_t frames, std::size_t block);
 
@@ -70,6 +90,7 @@ class ClapPlugin {
   HostCalls calls_;
   const clap_plugin* plugin_ = nullptr;
   bool is_started_ = false;
+  std::vector<ClapEvent> given_;
 };
 
 /// The file, opened with every symbol looked up.

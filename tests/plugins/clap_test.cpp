@@ -8,7 +8,7 @@
 #include "knotwave/base/file.h"
 #include "knotwave/base/sha256.h"
 #include "knotwave/engine/journal.h"
-#include "knotwave/plugins/parameters.h"
+#include "knotwave/plugins/instrument.h"
 
 #include "clap_host.h"
 #include "support/program.h"
@@ -28,7 +28,7 @@ std::unique_ptr<ClapPlugin> plugin() {
 }
 
 clap_id id_of(std::string_view word) {
-  return plugins::parameters()[plugins::parameter_of_word(word)].id;
+  return plugins::Instrument::table()[plugins::Instrument::table().of_word(word)].id;
 }
 
 /// A chord, a pedal, a bend, a parameter that moves, then all ends.
@@ -78,9 +78,9 @@ engine::Journal journal_of(const std::vector<ClapEvent>& events, const std::stri
     } else {
       record.kind = engine::Event::Kind::set_target;
       record.every_channel = true;
-      const auto all = plugins::parameters();
-      record.index =
-          static_cast<std::uint32_t>(all[plugins::parameter_of_id(event.value.param_id)].slot);
+      const auto& all = plugins::Instrument::table();
+      record.index = static_cast<std::uint32_t>(
+          all[plugins::Instrument::table().of_id(event.value.param_id)].slot);
       record.number = event.value.value;
       journal.records.push_back(record);
     }
@@ -288,7 +288,7 @@ TEST(Clap, ADamagedStateIsRefusedAndNothingChanges) {
 TEST(Clap, EveryParameterIsToldAndReadBack) {
   const auto played = plugin();
   const auto* params = played->extension<clap_plugin_params>(CLAP_EXT_PARAMS);
-  ASSERT_EQ(params->count(played->get()), plugins::parameters().size());
+  ASSERT_EQ(params->count(played->get()), plugins::Instrument::table().size());
   for (std::uint32_t i = 0; i < params->count(played->get()); ++i) {
     clap_param_info info{};
     ASSERT_TRUE(params->get_info(played->get(), i, &info));
@@ -321,6 +321,30 @@ TEST(Clap, ResetEndsEveryNoteAndKeepsParameters) {
   played->extension<clap_plugin_params>(CLAP_EXT_PARAMS)
       ->get_value(played->get(), id_of("pan"), &value);
   EXPECT_EQ(value, -1);
+}
+
+TEST(Clap, ANoteHeldWhileThePatchOrTheRateChangesEndsAsItShould) {
+  const auto played = plugin();
+  ASSERT_TRUE(played->start(48000, 512));
+  engine::Journal other;
+  other.banks.push_back({"wobble.toml", {{"wobble.toml", song_patch()}}, {}});
+  StereoSound out;
+  const auto run = [&](const std::vector<ClapEvent>& events) {
+    EXPECT_NE(played->process(events, 512, out), CLAP_PROCESS_ERROR);
+    for (const float sample : out.left) EXPECT_TRUE(std::isfinite(sample));
+    return *std::ranges::max_element(out.left);
+  };
+  run({clap_note(0, CLAP_EVENT_NOTE_ON, 0, 60, 1)});
+  ASSERT_TRUE(played->load(engine::write_journal(other)));
+  for (int i = 0; i < 20; ++i) EXPECT_GT(run({}), 0.001F) << i;
+  run({clap_note(0, CLAP_EVENT_NOTE_OFF, 0, 60, 0)});
+  for (int i = 0; i < 200; ++i) run({});
+  EXPECT_EQ(played->process({}, 512, out), CLAP_PROCESS_SLEEP);
+  // A new rate begins in silence: the host has let go of its notes.
+  run({clap_note(0, CLAP_EVENT_NOTE_ON, 0, 60, 1)});
+  ASSERT_TRUE(played->start(96000, 512));
+  EXPECT_EQ(run({}), 0.0F);
+  EXPECT_EQ(run({clap_note(0, CLAP_EVENT_NOTE_OFF, 0, 60, 0)}), 0.0F);
 }
 
 TEST(Clap, RatesFrom8000To768000AndOddOnes) {
@@ -363,7 +387,8 @@ TEST(Clap, RandomEventsOfAnyKindLeaveNoNoteAndNoNan) {
       event.header.space_id = static_cast<std::uint16_t>(draw(8) == 0);
       event.header.type = static_cast<std::uint16_t>(draw(12));
       if (event.header.type == CLAP_EVENT_PARAM_VALUE && draw(2) == 0) {
-        event.value.param_id = plugins::parameters()[draw(plugins::parameters().size())].id;
+        event.value.param_id =
+            plugins::Instrument::table()[draw(plugins::Instrument::table().size())].id;
       }
       if (event.header.type == CLAP_EVENT_NOTE_ON) {
         event.note.channel = static_cast<std::int16_t>(draw(18)) - 1;

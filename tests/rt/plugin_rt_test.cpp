@@ -41,8 +41,13 @@ class HostStorm {
     for (std::int64_t sample = 0; sample < static_cast<std::int64_t>(kBlock);
          sample += 1 + static_cast<std::int64_t>(bits() % 20)) {
       if (bits() % 2 == 0) {
-        instrument_.add_parameter(bits() % plugins::parameters().size(),
+        instrument_.add_parameter(bits() % plugins::Instrument::table().size(),
                                   random_.bipolar(draw_++) * 20, sample);
+      } else if (bits() % 4 == 0) {
+        instrument_.add_modulation(
+            bits() % plugins::Instrument::table().size(), random_.bipolar(draw_++) * 3,
+            {static_cast<std::int32_t>(bits() % 40) - 20, -1, static_cast<int>(bits() % 140) - 12},
+            sample);
       } else {
         instrument_.add(message(sample));
       }
@@ -62,6 +67,7 @@ class HostStorm {
     const std::uint64_t draw = bits();
     engine::Event event;
     event.midi.time.sample = sample;
+    event.note = static_cast<std::int32_t>(draw >> 40 & 31) - 12;
     event.midi.bytes[0] = static_cast<std::uint8_t>(kStatus[draw & 7] | (draw >> 3 & 15));
     event.midi.bytes[1] = static_cast<std::uint8_t>(draw >> 8 & 127);
     event.midi.bytes[2] = static_cast<std::uint8_t>(draw >> 16 & 127);
@@ -95,7 +101,7 @@ class Control {
     for (std::size_t preset = 0; preset < plugins::factory_presets().size(); ++preset) {
       const int begin = blocks_.load();
       EXPECT_TRUE(instrument.load_preset(preset));
-      instrument.set_parameter(preset % plugins::parameters().size(), 0.5);
+      instrument.set_parameter(preset % plugins::Instrument::table().size(), 0.5);
       while (blocks_.load() < begin + kBlocksOfAPreset && blocks_.load() < kMostBlocks) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }

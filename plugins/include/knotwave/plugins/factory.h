@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The patches and the bank that are inside every plugin: those of examples/. [any]
+// What is inside every plugin: the patches, the bank, the curves and the states of examples/. [any]
 #pragma once
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "knotwave/engine/bank.h"
@@ -18,5 +19,12 @@ struct Preset {
 std::span<const Preset> factory_presets();
 /// What they are read from: paths below examples/. [control] Made at the first call.
 std::span<const engine::FileText> factory_files();
+/// The bytes of one of them; empty: there is none.
+std::string_view factory_text(std::string_view path);
+
+/// Those of an effect: "plugins/KEY-warm-valve.toml" is "Warm valve". The order is that of
+/// cmake/KnotwaveExamples.cmake; new ones come at the end.
+std::span<const Preset> effect_presets(std::string_view key);
+std::vector<std::string> preset_names(std::span<const Preset> presets);
 
 }  // namespace knotwave::plugins

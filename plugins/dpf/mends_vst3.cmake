@@ -163,6 +163,37 @@ dpf_mend(${vst3} "            fPlugin.setTimePosition(fTimePosition);
         }
        #endif")
 
+# The end of the controllers' parameters was counted with them: the first parameter of ours was always told to be at its
+# low end, which hosts that ask after loading a state then set (Ardour: silence).
+dpf_mend(src/DistrhoPluginVST.hpp "kVst3InternalParameterMidiCC_start + 130*16,
+    kVst3InternalParameterCount = kVst3InternalParameterMidiCC_end" "kVst3InternalParameterMidiCC_start + 130*16 - 1,
+    kVst3InternalParameterCount = kVst3InternalParameterMidiCC_end + 1")
+
+# A host reads what it set. What it sets while nothing is processed counts at once, and is saved.
+dpf_mend(${vst3} "        _setNormalizedPluginParameterValue(index, normalized);
+       #endif
+
+        return V3_OK;
+    }
+
+    v3_result setComponentHandler" "        _setNormalizedPluginParameterValue(index, normalized);
+       #else
+        const uint32_t index = static_cast<uint32_t>(rindex - kVst3InternalParameterCount);
+        DISTRHO_SAFE_ASSERT_UINT2_RETURN(index < fParameterCount, index, fParameterCount, V3_INVALID_ARG);
+        fCachedParameterValues[kVst3InternalParameterBaseCount + index] = normalizedParameterToPlain(rindex, normalized);
+        if (! fPlugin.isActive())
+        {
+            knotwave::plugins::DpfBeyond& beyond = knotwave::plugins::dpf_beyond(fPlugin.getInstancePointer());
+            fCachedParameterValues[kVst3InternalParameterBaseCount + index] = beyond.add_point(index, normalized, 0);
+            beyond.flush_points();
+        }
+       #endif
+
+        return V3_OK;
+    }
+
+    v3_result setComponentHandler")
+
 # A state is the plugin's own text and no more: whole or refused, whatever the locale and however it is cut up.
 dpf_mend(${vst3} "    v3_result setState(v3_bstream** const stream)
     {

@@ -9,6 +9,11 @@
 
 namespace knotwave::plugins {
 
+/// What LV2 says of the song at one moment. NaN: not told.
+struct BarsAndBeats {
+  double bar, bar_beat, beat, beat_unit, beats_per_bar, beats_per_minute, speed;
+};
+
 class DpfBeyond {
  public:
   virtual ~DpfBeyond() = default;
@@ -19,8 +24,11 @@ class DpfBeyond {
                           std::int64_t sample) KNOTWAVE_RT = 0;
   /// Where no block follows: all points count at once. [audio]
   virtual void flush_points() KNOTWAVE_RT = 0;
-  /// In place of DPF's own position, which loses digits. [audio]
-  virtual void set_transport(const Transport& transport) KNOTWAVE_RT = 0;
+  /// The same at once, of a plugin that is switched off. [control]
+  virtual float set(std::uint32_t index, double normalized) = 0;
+  /// In place of DPF's own position, of the block that run() is called with next. [audio]
+  virtual void add_transport(const Transport& transport, std::int64_t sample) KNOTWAVE_RT = 0;
+  virtual void hear_song(const BarsAndBeats& told, std::int64_t sample) KNOTWAVE_RT = 0;
   virtual std::int64_t tail() const KNOTWAVE_RT = 0;  ///< Plugin::tail_samples(). [any]
 
   virtual std::string save() const = 0;            ///< [control]

@@ -14,6 +14,7 @@
 #include "knotwave/plugins/plugin_list.h"
 
 #include "dpf_beyond.h"
+#include "lv2_song.h"
 
 START_NAMESPACE_DISTRHO
 
@@ -94,18 +95,6 @@ Event event_of(const MidiEvent& midi) {
 }
 #endif
 
-kw::Transport transport_of(const TimePosition& position) {
-  kw::Transport transport;
-  const TimePosition::BarBeatTick& bbt = position.bbt;
-  if (!bbt.valid || !(bbt.ticksPerBeat > 0) || !(bbt.beatType > 0)) return transport;
-  transport.beats_per_minute = bbt.beatsPerMinute;
-  transport.is_playing = position.playing;
-  transport.has_position = true;
-  const double beats = (bbt.barStartTick + bbt.tick) / bbt.ticksPerBeat + bbt.beat - 1;
-  transport.quarters = beats * 4 / static_cast<double>(bbt.beatType);
-  return transport;
-}
-
 #if DISTRHO_PLUGIN_WANT_MIDI_OUTPUT
 MidiEvent midi_of(const knotwave::base::MidiEvent& given) {
   const std::uint8_t status = given.bytes[0];
@@ -118,12 +107,23 @@ MidiEvent midi_of(const knotwave::base::MidiEvent& given) {
 }
 #endif
 
+double value_of(std::uint32_t index, double normalized) KNOTWAVE_RT {
+  const kw::Parameter& parameter = (*info().parameters)[index];
+  const double range = parameter.high - parameter.low;
+  const double part = std::clamp(normalized, 0.0, 1.0);
+  // A host that keeps floats still gives back the initial value itself.
+  const bool is_initial =
+      static_cast<float>(part) == static_cast<float>((parameter.initial - parameter.low) / range);
+  return is_initial ? parameter.initial : held(parameter, parameter.low + part * range);
+}
+
 /// What happens in a block, in order of time and, at one sample, in the order it was told.
 struct Happening {
+  enum class Kind { transport, point, midi };
   std::int64_t sample = 0;
   std::uint32_t order = 0;
-  std::uint32_t index = 0;  ///< of the MIDI event, or of the parameter
-  bool is_point = false;
+  std::uint32_t index = 0;  ///< of the transport, the parameter, the MIDI event
+  Kind kind = Kind::point;
   double value = 0;
   bool operator<(const Happening& other) const {
     return sample != other.sample ? sample < other.sample : order < other.order;
@@ -144,29 +144,29 @@ class DpfPlugin : public Plugin, public kw::DpfBeyond {
 
   float add_point(std::uint32_t index, double normalized,
                   std::int64_t sample) KNOTWAVE_RT override {
-    const kw::Parameter& parameter = (*info().parameters)[index];
-    const double range = parameter.high - parameter.low;
-    const double part = std::clamp(normalized, 0.0, 1.0);
-    // A host that keeps floats still gives back the initial value itself.
-    const bool is_initial =
-        static_cast<float>(part) == static_cast<float>((parameter.initial - parameter.low) / range);
-    const double value =
-        is_initial ? parameter.initial : held(parameter, parameter.low + part * range);
-    if (count_ < happenings_.size()) {
-      happenings_[count_] = {sample, count_, index, true, value};
-      ++count_;
-    }
+    const double value = value_of(index, normalized);
+    happens(Happening::Kind::point, sample, index, value);
     return static_cast<float>(value);
   }
   void flush_points() KNOTWAVE_RT override {
     for (std::uint32_t i = 0; i < count_; ++i) {
-      inside_->set_parameter(happenings_[i].index, happenings_[i].value);
+      const Happening& one = happenings_[i];
+      if (one.kind == Happening::Kind::point) inside_->set_parameter(one.index, one.value);
     }
-    count_ = 0;
+    count_ = transport_count_ = 0;
   }
-  void set_transport(const kw::Transport& transport) KNOTWAVE_RT override {
-    transport_ = transport;
-    has_transport_ = true;
+  float set(std::uint32_t index, double normalized) override {
+    const double value = value_of(index, normalized);
+    inside_->set_parameter(index, value);
+    return static_cast<float>(value);
+  }
+  void add_transport(const kw::Transport& transport, std::int64_t sample) KNOTWAVE_RT override {
+    if (transport_count_ == transports_.size()) return;
+    transports_[transport_count_] = transport;
+    happens(Happening::Kind::transport, sample, transport_count_++);
+  }
+  void hear_song(const kw::BarsAndBeats& told, std::int64_t sample) KNOTWAVE_RT override {
+    add_transport(song_.hear(told, sample), sample);
   }
   std::int64_t tail() const KNOTWAVE_RT override { return inside_->tail_samples(); }
   std::string save() const override { return inside_->state(); }
@@ -282,6 +282,7 @@ class DpfPlugin : public Plugin, public kw::DpfBeyond {
   }
 
   void activate() override {
+    song_.reset(getSampleRate());
     if (const auto active = inside_->activate(getSampleRate()); !active) {
       d_stderr2("Knotwave: %s", active.error().message.c_str());
     }
@@ -300,10 +301,8 @@ class DpfPlugin : public Plugin, public kw::DpfBeyond {
       return;
     }
 #if DISTRHO_PLUGIN_WANT_MIDI_INPUT
-    for (std::uint32_t i = 0; i < count && count_ < happenings_.size(); ++i) {
-      if (midi[i].size == 0) continue;
-      happenings_[count_] = {midi[i].frame, count_, i, false, 0};
-      ++count_;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (midi[i].size > 0) happens(Happening::Kind::midi, midi[i].frame, i);
     }
 #endif
     const auto end = happenings_.begin() + static_cast<std::ptrdiff_t>(count_);
@@ -315,11 +314,13 @@ class DpfPlugin : public Plugin, public kw::DpfBeyond {
     inside_->begin({{in.data(), channels_of(info().inputs)},
                     {out.data(), channels_of(info().outputs)},
                     frames});
-    inside_->add_transport(has_transport_ ? transport_ : transport_of(getTimePosition()), 0);
+    if (song_.is_known()) inside_->add_transport(song_.begin(), 0);
     for (auto it = happenings_.begin(); it != end; ++it) {
       // A host's error: the block has no such sample.
       const std::int64_t sample = std::clamp<std::int64_t>(it->sample, 0, frames - 1);
-      if (it->is_point) {
+      if (it->kind == Happening::Kind::transport) {
+        inside_->add_transport(transports_[it->index], sample);
+      } else if (it->kind == Happening::Kind::point) {
         inside_->add_parameter(it->index, it->value, sample);
 #if DISTRHO_PLUGIN_WANT_MIDI_INPUT
       } else {
@@ -329,8 +330,9 @@ class DpfPlugin : public Plugin, public kw::DpfBeyond {
 #endif
       }
     }
-    count_ = 0;
+    count_ = transport_count_ = 0;
     inside_->render();
+    song_.end_block(frames);
 #if DISTRHO_PLUGIN_WANT_MIDI_OUTPUT
     for (const knotwave::base::MidiEvent& given : inside_->midi_out()) {
       if (given.sysex == nullptr && !writeMidiEvent(midi_of(given))) break;
@@ -339,6 +341,13 @@ class DpfPlugin : public Plugin, public kw::DpfBeyond {
   }
 
  private:
+  void happens(Happening::Kind kind, std::int64_t sample, std::uint32_t index,
+               double value = 0) KNOTWAVE_RT {
+    if (count_ == happenings_.size()) return;
+    happenings_[count_] = {sample, count_, index, kind, value};
+    ++count_;
+  }
+
   std::unique_ptr<kw::Plugin> inside_;
   std::string label_, description_;
 
@@ -346,8 +355,9 @@ class DpfPlugin : public Plugin, public kw::DpfBeyond {
   static constexpr std::size_t kMostHappenings = 8192;  ///< of a block; DPF gives 4096 of MIDI
   std::vector<Happening> happenings_;
   std::uint32_t count_ = 0;
-  kw::Transport transport_;
-  bool has_transport_ = false;
+  std::array<kw::Transport, 256> transports_{};
+  std::uint32_t transport_count_ = 0;
+  kw::Lv2Song song_;
 
   DISTRHO_DECLARE_NON_COPYABLE_WITH_LEAK_DETECTOR(DpfPlugin)
 };

@@ -33,21 +33,46 @@ foreach(variable "uint32_t    d_nextBufferSize" "double      d_nextSampleRate" "
 endforeach()
 dpf_mend(src/DistrhoPluginLV2.cpp "static LV2_Program_Descriptor desc;" "static thread_local LV2_Program_Descriptor desc;")
 
-# LV2: the song's place is a sum of floats, and its bar is not counted on.
-dpf_mend(src/DistrhoPluginLV2.cpp "float    barBeat;" "double   barBeat;")
-dpf_mend(src/DistrhoPluginLV2.cpp "                    if (fLastPositionData.barBeat >= 0.0f)
-                    {
-                        fLastPositionData.barBeat = std::fmod(fLastPositionData.barBeat+addedBarBeats,
-                                                              (double)fLastPositionData.beatsPerBar);
-" "                    if (fLastPositionData.barBeat >= 0.0f)
-                    {
-                        const double passed = fLastPositionData.barBeat + addedBarBeats;
-                        const double bars = std::floor(passed / fLastPositionData.beatsPerBar);
-                        fLastPositionData.barBeat = passed - bars * fLastPositionData.beatsPerBar;
+# LV2: the song's place is a sum of floats whose bar is not counted on, at the block's begin, and unknown without a time
+# signature. The adapter hears what the host says where it says it; and the song's running beat, too.
+dpf_mend(src/DistrhoPluginLV2.cpp "        LV2_URID timeBarBeat;
+" "        LV2_URID timeBarBeat;
+        LV2_URID timeBeat;
 ")
-dpf_mend(src/DistrhoPluginLV2.cpp "fLastPositionData.bar += std::floor((fLastPositionData.barBeat+addedBarBeats)/
-                                                             fLastPositionData.beatsPerBar);"
-  "fLastPositionData.bar += static_cast<int64_t>(bars);")
+dpf_mend(src/DistrhoPluginLV2.cpp "              timeBarBeat(map(LV2_TIME__barBeat)),
+" "              timeBarBeat(map(LV2_TIME__barBeat)),
+              timeBeat(map(LV2_TIME__beat)),
+")
+dpf_mend(src/DistrhoPluginLV2.cpp "                                    fURIDs.timeBarBeat, &barBeat,
+" "                                    fURIDs.timeBarBeat, &barBeat,
+                                    fURIDs.timeBeat, &beat,
+")
+dpf_mend(src/DistrhoPluginLV2.cpp "                LV2_Atom* barBeat = nullptr;
+" "                LV2_Atom* barBeat = nullptr;
+                LV2_Atom* beat = nullptr;
+")
+dpf_mend(src/DistrhoPluginLV2.cpp "                // need to handle this first as other values depend on it
+" "                const auto number = [this](const LV2_Atom* const atom) -> double
+                {
+                    if (atom == nullptr)
+                        return NAN;
+                    if (atom->type == fURIDs.atomDouble)
+                        return ((const LV2_Atom_Double*)atom)->body;
+                    if (atom->type == fURIDs.atomFloat)
+                        return ((const LV2_Atom_Float*)atom)->body;
+                    if (atom->type == fURIDs.atomInt)
+                        return ((const LV2_Atom_Int*)atom)->body;
+                    if (atom->type == fURIDs.atomLong)
+                        return static_cast<double>(((const LV2_Atom_Long*)atom)->body);
+                    return NAN;
+                };
+                knotwave::plugins::dpf_beyond(fPlugin.getInstancePointer()).hear_song(
+                    {number(bar), number(barBeat), number(beat), number(beatUnit), number(beatsPerBar), number(beatsPerMinute), number(speed)},
+                    event->time.frames);
+                continue;
+
+                // need to handle this first as other values depend on it
+")
 
 # LV2: a state that is refused is told to the host.
 dpf_mend(src/DistrhoPluginLV2.cpp "#include \"DistrhoPluginInternal.hpp\"" "#include \"DistrhoPluginInternal.hpp\"\n#include \"dpf_beyond.h\"")

@@ -148,10 +148,46 @@ dpf_mend(${vst3} "        updateParametersFromProcessing(data->output_params, da
     }
 ")
 
-# The host's place in the song as it is: with digits, before the song's begin, without a time signature.
-dpf_mend(${vst3} "            fPlugin.setTimePosition(fTimePosition);
-        }
-       #endif" "            fPlugin.setTimePosition(fTimePosition);
+# A note or pressure that is given has no number of its own: 0 is one.
+foreach(what "NOTE_OFF:note_off" "NOTE_ON:note_on" "POLY_PRESSURE:poly_pressure")
+  string(REPLACE ":" ";" what ${what})
+  list(GET what 0 type)
+  list(GET what 1 field)
+  dpf_mend(${vst3} "            event.type = V3_EVENT_${type};
+            event.${field}.channel" "            event.type = V3_EVENT_${type};
+            event.${field}.note_id = -1;
+            event.${field}.channel")
+endforeach()
+
+# Where MIDI is heard, the first parameter behind the controllers is taken for one: it reads as 0. And a bend has 128 steps.
+foreach(answer 0.0 V3_INVALID_ARG)
+  dpf_mend(${vst3} "            rindex <= kVst3InternalParameterMidiCC_end)
+            return ${answer};" "            rindex < kVst3InternalParameterMidiCC_end)
+            return ${answer};")
+endforeach()
+dpf_mend(${vst3} "            info->step_count = 127;" "            info->step_count = index % 130 == 129 ? 16383 : 127;")
+
+# A knob that is turned while the plugin is switched off counts: no block follows that would tell it.
+dpf_mend(${vst3} "        _setNormalizedPluginParameterValue(index, normalized);
+       #endif
+
+        return V3_OK;
+" "        _setNormalizedPluginParameterValue(index, normalized);
+       #endif
+
+        const uint32_t knob = static_cast<uint32_t>(rindex - kVst3InternalParameterCount);
+        if (knob < fParameterCount && ! fPlugin.isActive())
+            fCachedParameterValues[kVst3InternalParameterBaseCount + knob] =
+                knotwave::plugins::dpf_beyond(fPlugin.getInstancePointer()).set(knob, normalized);
+        return V3_OK;
+")
+
+# The host's place in the song as it is: with digits, before the song's begin, without a time signature. DPF's way to bars
+# and beats divides by 0 where a bar is shorter than a quarter note, or the host says 0/0.
+dpf_mend(${vst3} "        if (v3_process_context* const ctx = data->ctx)
+        {
+" "        if (const v3_process_context* const ctx = data->ctx)
+        {
             knotwave::plugins::Transport transport;
             transport.is_playing = (ctx->state & V3_PROCESS_CTX_PLAYING) != 0;
             transport.has_position = (ctx->state & V3_PROCESS_CTX_PROJECT_TIME_VALID) != 0;
@@ -159,9 +195,12 @@ dpf_mend(${vst3} "            fPlugin.setTimePosition(fTimePosition);
                 transport.quarters = ctx->project_time_quarters;
             if (ctx->state & V3_PROCESS_CTX_TEMPO_VALID)
                 transport.beats_per_minute = ctx->bpm;
-            knotwave::plugins::dpf_beyond(fPlugin.getInstancePointer()).set_transport(transport);
+            knotwave::plugins::dpf_beyond(fPlugin.getInstancePointer()).add_transport(transport, 0);
         }
-       #endif")
+
+        if (const v3_process_context* const ctx = nullptr)
+        {
+")
 
 # The end of the controllers' parameters was counted with them: the first parameter of ours was always told to be at its
 # low end, which hosts that ask after loading a state then set (Ardour: silence).

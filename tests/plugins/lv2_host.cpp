@@ -2,14 +2,18 @@
 #include "lv2_host.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <lv2/atom-forge.h>
+#include <lv2/atom-util.h>
 #include <lv2/atom.h>
 #include <lv2/buf-size.h>
 #include <lv2/midi.h>
 #include <lv2/options.h>
+#include <lv2/time.h>
 
 namespace knotwave::test {
 namespace {
@@ -17,23 +21,77 @@ namespace {
 constexpr const char* kKey = "urn:distrho:patch";
 constexpr std::size_t kEventWords = 1 << 16;
 
-/// Puts MIDI into a sequence of atoms.
-void write_events(const Story& story, std::uint32_t sequence, std::uint32_t midi,
-                  std::vector<std::uint64_t>& room) {
-  auto* const head = reinterpret_cast<LV2_Atom_Sequence*>(room.data());
-  head->atom.type = sequence;
-  head->body = {};
-  auto* place = reinterpret_cast<char*>(room.data()) + sizeof *head;
-  for (const Story::Midi& event : story.midi) {
-    auto* const atom = reinterpret_cast<LV2_Atom_Event*>(place);
-    atom->time.frames = static_cast<std::int64_t>(event.sample);
-    const int status = event.bytes[0] & 0xF0;
-    atom->body = {status == 0xC0 || status == 0xD0 ? 2u : 3u, midi};
-    std::memcpy(place + sizeof *atom, event.bytes.data(), 3);
-    place += sizeof *atom + 8;
+/// A sequence of atoms as a host gives it, in order of time.
+class Sequence {
+ public:
+  Sequence(LV2_URID_Map& map, std::vector<std::uint64_t>& room) : map_(map) {
+    lv2_atom_forge_init(&forge_, &map);
+    lv2_atom_forge_set_buffer(&forge_, reinterpret_cast<std::uint8_t*>(room.data()),
+                              room.size() * sizeof room[0]);
+    lv2_atom_forge_sequence_head(&forge_, &frame_, 0);
   }
-  head->atom.size = static_cast<std::uint32_t>(place - reinterpret_cast<char*>(room.data()) -
-                                               static_cast<std::ptrdiff_t>(sizeof head->atom));
+  ~Sequence() { lv2_atom_forge_pop(&forge_, &frame_); }
+  Sequence(const Sequence&) = delete;
+  Sequence& operator=(const Sequence&) = delete;
+
+  void add(const Story::Midi& event) {
+    lv2_atom_forge_frame_time(&forge_, static_cast<std::int64_t>(event.sample));
+    const int status = event.bytes[0] & 0xF0;
+    const std::uint32_t size = status == 0xC0 || status == 0xD0 ? 2 : 3;
+    lv2_atom_forge_atom(&forge_, size, number(LV2_MIDI__MidiEvent));
+    lv2_atom_forge_write(&forge_, event.bytes.data(), size);
+  }
+  /// In bars and beats; without a time signature the running beat alone.
+  void add(const Story::Song& told) {
+    const double beats = told.transport.quarters * told.beat_unit / 4;
+    const double bar = std::floor(beats / told.beats_per_bar);
+    lv2_atom_forge_frame_time(&forge_, static_cast<std::int64_t>(told.sample));
+    LV2_Atom_Forge_Frame object;
+    lv2_atom_forge_object(&forge_, &object, 0, number(LV2_TIME__Position));
+    key(LV2_TIME__speed);
+    lv2_atom_forge_float(&forge_, told.transport.is_playing ? 1.0F : 0.0F);
+    key(LV2_TIME__beatsPerMinute);
+    lv2_atom_forge_double(&forge_, told.transport.beats_per_minute);
+    if (told.has_signature) {
+      key(LV2_TIME__bar);
+      if (std::abs(bar) < 1e9) {
+        lv2_atom_forge_long(&forge_, static_cast<std::int64_t>(bar));
+      } else {
+        lv2_atom_forge_double(&forge_, bar);
+      }
+      key(LV2_TIME__barBeat);
+      lv2_atom_forge_double(&forge_, beats - bar * told.beats_per_bar);
+      key(LV2_TIME__beatUnit);
+      lv2_atom_forge_int(&forge_, told.beat_unit);
+      key(LV2_TIME__beatsPerBar);
+      lv2_atom_forge_float(&forge_, static_cast<float>(told.beats_per_bar));
+    } else if (told.transport.has_position) {
+      key(LV2_TIME__beat);
+      lv2_atom_forge_double(&forge_, told.transport.quarters);
+    }
+    lv2_atom_forge_pop(&forge_, &object);
+  }
+
+ private:
+  std::uint32_t number(const char* uri) { return map_.map(map_.handle, uri); }
+  void key(const char* uri) { lv2_atom_forge_key(&forge_, number(uri)); }
+
+  LV2_URID_Map& map_;
+  LV2_Atom_Forge forge_{};
+  LV2_Atom_Forge_Frame frame_{};
+};
+
+void write_events(const Story& story, LV2_URID_Map& map, std::vector<std::uint64_t>& room) {
+  Sequence events(map, room);
+  auto told = story.song.begin();
+  const auto tell_song_until = [&](std::size_t sample) {
+    for (; told != story.song.end() && told->sample <= sample; ++told) events.add(*told);
+  };
+  for (const Story::Midi& event : story.midi) {
+    tell_song_until(event.sample);
+    events.add(event);
+  }
+  tell_song_until(story.frames);
 }
 
 struct Kept {
@@ -94,6 +152,8 @@ Lv2Plugin::~Lv2Plugin() {
 void Lv2Plugin::activate() {
   descriptor_->activate(handle_);
   is_active_ = true;
+  passed_ = 0;
+  given_.clear();
 }
 void Lv2Plugin::deactivate() {
   if (is_active_) descriptor_->deactivate(handle_);
@@ -112,7 +172,7 @@ Channels Lv2Plugin::run(const Story& story) {
     descriptor_->connect_port(handle_, port++, channel.data());
   }
   const std::uint32_t sequence = number_of(LV2_ATOM__Sequence);
-  write_events(story, sequence, number_of(LV2_MIDI__MidiEvent), events_in_);
+  write_events(story, map_, events_in_);
   *reinterpret_cast<LV2_Atom*>(events_out_.data()) = {
       static_cast<std::uint32_t>(kEventWords * 8 - sizeof(LV2_Atom)), sequence};
   descriptor_->connect_port(handle_, port++, events_in_.data());
@@ -123,6 +183,14 @@ Channels Lv2Plugin::run(const Story& story) {
   }
   for (float& control : controls_) descriptor_->connect_port(handle_, port++, &control);
   descriptor_->run(handle_, static_cast<std::uint32_t>(story.frames));
+  const auto& sequence_out = *reinterpret_cast<const LV2_Atom_Sequence*>(events_out_.data());
+  LV2_ATOM_SEQUENCE_FOREACH(&sequence_out, event) {
+    if (event->body.type != numbers_.at(LV2_MIDI__MidiEvent)) continue;
+    Story::Midi& midi = given_.emplace_back();
+    midi.sample = passed_ + static_cast<std::size_t>(event->time.frames);
+    std::memcpy(midi.bytes.data(), event + 1, std::min<std::size_t>(event->body.size, 3));
+  }
+  passed_ += story.frames;
   return out;
 }
 

@@ -24,11 +24,14 @@ class Lv2Plugin {
   Lv2Plugin(const Lv2Plugin&) = delete;
   Lv2Plugin& operator=(const Lv2Plugin&) = delete;
 
+  const LV2_Descriptor* descriptor() const { return descriptor_; }
   void activate();
   void deactivate();
   /// One call of run(). Points count at its begin, as ports do.
   Channels run(const Story& story);
   Channels play(const Story& story, std::size_t block);
+  /// MIDI of all blocks since activate(), by its sample since then.
+  const std::vector<Story::Midi>& given() const { return given_; }
   /// What save() stores under the plugin's own key.
   std::string save() const;
   bool load(const std::string& text);
@@ -46,6 +49,8 @@ class Lv2Plugin {
   std::vector<float> controls_;
   std::vector<std::uint64_t> events_in_, events_out_;
   bool is_active_ = false;
+  std::size_t passed_ = 0;
+  std::vector<Story::Midi> given_;
 };
 
 }  // namespace knotwave::test

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -90,6 +91,55 @@ TEST_P(Lv2, ADamagedStateIsRefusedAndNothingChanges) {
        {std::string("x"), state + "x", state.substr(0, state.size() / 2)}) {
     EXPECT_FALSE(played->load(text));
     EXPECT_EQ(played->save(), state);
+  }
+}
+
+// Also in the middle of blocks.
+TEST_P(Lv2, FollowsTheSongOfTheHostToTheSample) {
+  for (const std::size_t off : {0u, 123u}) {
+    const Story story = story_with_song(info(), 480, off);
+    const Channels expected = played_by_itself(info(), story, 48000, 480, Points::at_the_block);
+    for (const std::size_t block : {480u, 4800u}) {
+      EXPECT_TRUE(plugin()->play(story, block) == expected) << off << ' ' << block;
+    }
+    Story silent = story;
+    silent.song.clear();
+    const bool follows = info().key == "curve" || info().key == "crossfade";
+    EXPECT_TRUE(!follows ||
+                played_by_itself(info(), silent, 48000, 480, Points::at_the_block) != expected);
+  }
+}
+
+TEST_P(Lv2Notes, GivesTheMidiOfThePluginItself) {
+  const Story story = story_for_midi(info());
+  const auto played = plugin();
+  played->play(story, 480);
+  EXPECT_EQ(played->given().empty(), !info().gives_midi);
+  EXPECT_TRUE(played->given() == midi_given_by_itself(info(), story, 480));
+}
+
+TEST_P(Lv2, FollowsTheRunningBeatOfAHostWithoutATimeSignature) {
+  Story story = story_with_song(info(), 480, 7);
+  story.song.resize(2);
+  for (Story::Song& told : story.song) told.has_signature = false;
+  EXPECT_TRUE(plugin()->play(story, 480) ==
+              played_by_itself(info(), story, 48000, 480, Points::at_the_block));
+}
+
+TEST_P(Lv2, SurvivesAnyTimeSignatureAndPlace) {
+  const auto played = plugin();
+  Story story;
+  story.frames = 64;
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  for (const auto& [beats, unit] :
+       {std::pair{1, 8}, {0, 0}, {4, 0}, {0, 4}, {-1, -1}, {1, 1 << 30}}) {
+    for (const double quarters : {-1e300, -0.5, 1e18, infinity, nan}) {
+      for (const double bpm : {120.0, 0.0, -1.0, 1e300, infinity, nan}) {
+        story.song = {{0, {bpm, quarters, true, true}, beats, unit},
+                      {70, {bpm, quarters, true, true}}};
+        EXPECT_TRUE(is_finite(played->run(story))) << beats << '/' << unit;
+      }
+    }
   }
 }
 

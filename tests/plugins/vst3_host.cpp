@@ -2,165 +2,17 @@
 #include "vst3_host.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include "vst3_objects.h"
+
 namespace knotwave::test {
 namespace {
-
-// Objects of the host: what the plugin holds is the address of the first member, the table. They
-// outlive every call, so nobody counts.
-
-v3_result V3_API no_interface(void*, const v3_tuid, void** object) {
-  *object = nullptr;
-  return V3_NO_INTERFACE;
-}
-std::uint32_t V3_API one(void*) { return 1; }
-template <class Table>
-void make_unknown(Table& table) {
-  table.query_interface = no_interface;
-  table.ref = one;
-  table.unref = one;
-}
-
-struct Queue {
-  v3_param_value_queue_cpp* table;
-  v3_param_id id;
-  std::vector<std::pair<std::int32_t, double>> points;
-
-  static v3_param_value_queue_cpp* queue_table() {
-    static v3_param_value_queue_cpp made = [] {
-      v3_param_value_queue_cpp queue{};
-      make_unknown(queue);
-      queue.queue.get_param_id = [](void* self) { return static_cast<Queue*>(self)->id; };
-      queue.queue.get_point_count = [](void* self) {
-        return static_cast<std::int32_t>(static_cast<Queue*>(self)->points.size());
-      };
-      queue.queue.get_point = [](void* self, std::int32_t index, std::int32_t* sample,
-                                 double* value) -> v3_result {
-        const auto& point = static_cast<Queue*>(self)->points.at(static_cast<std::size_t>(index));
-        *sample = point.first;
-        *value = point.second;
-        return V3_OK;
-      };
-      queue.queue.add_point = [](void* self, std::int32_t sample, double value,
-                                 std::int32_t*) -> v3_result {
-        static_cast<Queue*>(self)->points.emplace_back(sample, value);
-        return V3_OK;
-      };
-      return queue;
-    }();
-    return &made;
-  }
-};
-
-struct Changes {
-  v3_param_changes_cpp* table = changes_table();
-  std::vector<std::unique_ptr<Queue>> queues;
-
-  void add(std::size_t sample, v3_param_id id, double value) {
-    auto found = std::ranges::find(queues, id, [](const auto& queue) { return queue->id; });
-    if (found == queues.end()) {
-      queues.push_back(std::make_unique<Queue>(Queue{Queue::queue_table(), id, {}}));
-      found = queues.end() - 1;
-    }
-    (*found)->points.emplace_back(static_cast<std::int32_t>(sample), value);
-  }
-  v3_param_changes** seen() { return reinterpret_cast<v3_param_changes**>(this); }
-
-  static v3_param_changes_cpp* changes_table() {
-    static v3_param_changes_cpp made = [] {
-      v3_param_changes_cpp changes{};
-      make_unknown(changes);
-      changes.changes.get_param_count = [](void* self) {
-        return static_cast<std::int32_t>(static_cast<Changes*>(self)->queues.size());
-      };
-      changes.changes.get_param_data = [](void* self, std::int32_t index) {
-        return reinterpret_cast<v3_param_value_queue**>(
-            static_cast<Changes*>(self)->queues.at(static_cast<std::size_t>(index)).get());
-      };
-      changes.changes.add_param_data = [](void* self, v3_param_id* id, std::int32_t* index) {
-        auto& given = static_cast<Changes*>(self)->queues;
-        given.push_back(std::make_unique<Queue>(Queue{Queue::queue_table(), *id, {}}));
-        *index = static_cast<std::int32_t>(given.size()) - 1;
-        return reinterpret_cast<v3_param_value_queue**>(given.back().get());
-      };
-      return changes;
-    }();
-    return &made;
-  }
-};
-
-struct Events {
-  v3_event_list_cpp* table = events_table();
-  std::vector<v3_event> all;
-  v3_event_list** seen() { return reinterpret_cast<v3_event_list**>(this); }
-
-  static v3_event_list_cpp* events_table() {
-    static v3_event_list_cpp made = [] {
-      v3_event_list_cpp list{};
-      make_unknown(list);
-      list.list.get_event_count = [](void* self) {
-        return static_cast<std::uint32_t>(static_cast<Events*>(self)->all.size());
-      };
-      list.list.get_event = [](void* self, std::int32_t index, v3_event* event) -> v3_result {
-        *event = static_cast<Events*>(self)->all.at(static_cast<std::size_t>(index));
-        return V3_OK;
-      };
-      list.list.add_event = [](void* self, v3_event* event) -> v3_result {
-        static_cast<Events*>(self)->all.push_back(*event);
-        return V3_OK;
-      };
-      return list;
-    }();
-    return &made;
-  }
-};
-
-/// Reads and writes at most `at_once` bytes a call.
-struct Stream {
-  struct Table : v3_funknown {
-    v3_bstream stream;
-  };
-  Table* table = stream_table();
-  std::string bytes;
-  std::size_t at_once = 0, place = 0;
-  v3_bstream** seen() { return reinterpret_cast<v3_bstream**>(this); }
-
-  static Table* stream_table() {
-    static Table made = [] {
-      Table stream{};
-      make_unknown(stream);
-      stream.stream.read = [](void* self, void* to, std::int32_t count,
-                              std::int32_t* read) -> v3_result {
-        auto& from = *static_cast<Stream*>(self);
-        const std::size_t done = std::min(
-            {static_cast<std::size_t>(count), from.at_once, from.bytes.size() - from.place});
-        std::memcpy(to, from.bytes.data() + from.place, done);
-        from.place += done;
-        if (read != nullptr) *read = static_cast<std::int32_t>(done);
-        return V3_OK;
-      };
-      stream.stream.write = [](void* self, void* from, std::int32_t count,
-                               std::int32_t* written) -> v3_result {
-        auto& to = *static_cast<Stream*>(self);
-        const std::size_t done = std::min(static_cast<std::size_t>(count), to.at_once);
-        to.bytes.append(static_cast<const char*>(from), done);
-        if (written != nullptr) *written = static_cast<std::int32_t>(done);
-        return V3_OK;
-      };
-      stream.stream.seek = [](void*, std::int64_t, std::int32_t, std::int64_t*) -> v3_result {
-        return V3_NOT_IMPLEMENTED;
-      };
-      stream.stream.tell = [](void*, std::int64_t*) -> v3_result { return V3_NOT_IMPLEMENTED; };
-      return stream;
-    }();
-    return &made;
-  }
-};
 
 void add_midi(const Vst3Plugin& plugin, const Story::Midi& midi, Events& events, Changes& changes) {
   const int status = midi.bytes[0] & 0xF0, channel = midi.bytes[0] & 0x0F;
@@ -189,6 +41,50 @@ void add_midi(const Vst3Plugin& plugin, const Story::Midi& midi, Events& events,
     return;
   }
   events.all.push_back(event);
+}
+
+/// The bytes that an event of the plugin stands for.
+std::array<std::uint8_t, 3> bytes_of(const v3_event& event) {
+  const auto bytes = [](int status, int channel, int one, int two) {
+    return std::array{static_cast<std::uint8_t>(status | channel), static_cast<std::uint8_t>(one),
+                      static_cast<std::uint8_t>(two)};
+  };
+  const auto part = [](float of) { return static_cast<int>(std::lround(of * 127)); };
+  const auto& on = event.note_on;
+  const auto& off = event.note_off;
+  const auto& pressure = event.poly_pressure;
+  const auto& cc = event.midi_cc_out;
+  switch (event.type) {
+    case V3_EVENT_NOTE_ON:
+      EXPECT_EQ(on.note_id, -1) << "a number of its own would be a number to keep";
+      return bytes(0x90, on.channel, on.pitch, part(on.velocity));
+    case V3_EVENT_NOTE_OFF:
+      EXPECT_EQ(off.note_id, -1);
+      return bytes(0x80, off.channel, off.pitch, part(off.velocity));
+    case V3_EVENT_POLY_PRESSURE:
+      EXPECT_EQ(pressure.note_id, -1);
+      return bytes(0xA0, pressure.channel, pressure.pitch, part(pressure.pressure));
+    default:
+      EXPECT_EQ(event.type, V3_EVENT_LEGACY_MIDI_CC_OUT);
+      if (cc.cc_number == 128) return bytes(0xD0, cc.channel, cc.value, 0);
+      if (cc.cc_number == 129) return bytes(0xE0, cc.channel, cc.value, cc.value2);
+      return bytes(0xB0, cc.channel, cc.cc_number, cc.value);
+  }
+}
+
+v3_process_context context_of(const Story::Song& told) {
+  v3_process_context song{};
+  const auto flag = [&](bool is_set, std::uint32_t bit) { song.state |= is_set ? bit : 0; };
+  flag(told.transport.is_playing, V3_PROCESS_CTX_PLAYING);
+  flag(told.transport.has_position, V3_PROCESS_CTX_PROJECT_TIME_VALID);
+  flag(told.transport.beats_per_minute != 0, V3_PROCESS_CTX_TEMPO_VALID);
+  flag(told.has_signature, V3_PROCESS_CTX_TIME_SIG_VALID);
+  song.sample_rate = 48000;
+  song.project_time_quarters = told.transport.quarters;
+  song.bpm = told.transport.beats_per_minute;
+  song.time_sig_numerator = told.beats_per_bar;
+  song.time_sig_denom = told.beat_unit;
+  return song;
 }
 
 }  // namespace
@@ -279,6 +175,8 @@ bool Vst3Plugin::start(double rate_hz, std::size_t max_frames) {
   is_started_ = v3_cpp_obj(processor_)->setup_processing(processor_, &setup) == V3_OK &&
                 v3_cpp_obj(component_)->set_active(component_, true) == V3_OK &&
                 set_processing(true);
+  passed_ = 0;
+  given_.clear();
   return is_started_;
 }
 
@@ -339,7 +237,16 @@ Channels Vst3Plugin::process(const Story& story, const std::vector<Vst3Value>& m
   data.output_params = told.seen();
   data.input_events = events.seen();
   data.output_events = given.seen();
+  v3_process_context song{};
+  if (!story.song.empty()) {
+    song = context_of(story.song.front());
+    data.ctx = &song;
+  }
   EXPECT_EQ(v3_cpp_obj(processor_)->process(processor_, &data), V3_OK);
+  for (const v3_event& event : given.all) {
+    given_.push_back({passed_ + static_cast<std::size_t>(event.sample_offset), bytes_of(event)});
+  }
+  passed_ += story.frames;
   return sound;
 }
 

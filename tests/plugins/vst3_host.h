@@ -60,6 +60,8 @@ class Vst3Plugin {
   Channels process(const Story& story, const std::vector<Vst3Value>& more = {});
   /// A story in blocks.
   Channels play(const Story& story, std::size_t block);
+  /// MIDI of all blocks since start(), by its sample since then.
+  const std::vector<Story::Midi>& given() const { return given_; }
 
   std::string save(std::size_t bytes_at_once = 1 << 20) const;
   bool load(const std::string& state, std::size_t bytes_at_once = 1 << 20);
@@ -76,6 +78,8 @@ class Vst3Plugin {
   v3_midi_mapping** mapping_ = nullptr;
   std::vector<int> inputs_, outputs_;  ///< channels of each bus
   bool is_started_ = false;
+  std::size_t passed_ = 0;
+  std::vector<Story::Midi> given_;
   std::vector<v3_param_info> parameters_;
 };
 

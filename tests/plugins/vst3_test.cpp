@@ -241,6 +241,74 @@ TEST_P(Vst3, PointsCountWhereABlockHasNoFrames) {
   EXPECT_EQ(played->save(), itself->state());
 }
 
+TEST_P(Vst3, AKnobTurnedWhileItIsSwitchedOffIsKept) {
+  const auto played = plugin();
+  v3_edit_controller** const controller = played->controller();
+  const auto itself = info().create();
+  const auto shown = played->parameters();
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const plugins::Parameter& parameter = (*info().parameters)[i];
+    const auto value = [&] {
+      return v3_cpp_obj(controller)->get_parameter_normalised(controller, shown[i].param_id);
+    };
+    const double range = parameter.high - parameter.low;
+    EXPECT_NEAR(value(), (parameter.initial - parameter.low) / range, 1e-6) << parameter.name;
+    EXPECT_EQ(
+        v3_cpp_obj(controller)->set_parameter_normalised(controller, shown[i].param_id, 0.625),
+        V3_OK);
+    itself->set_parameter(i, value_of(parameter, 0.625));
+    EXPECT_NEAR(value(), (itself->parameter(i) - parameter.low) / range, 1e-6) << parameter.name;
+  }
+  EXPECT_EQ(played->save(), itself->state());
+}
+
+TEST_P(Vst3, FollowsTheSongOfTheHostToTheSample) {
+  for (const std::size_t block : {480u, 48u}) {
+    const Story story = told_every_block(story_with_song(info(), 480, 0), 48000, block);
+    const Channels expected = audible(played_by_itself(info(), story, 48000, block));
+    const auto played = plugin();
+    ASSERT_TRUE(played->start(48000, 512));
+    EXPECT_TRUE(played->play(story, block) == expected) << block;
+    Story silent = story;
+    silent.song.clear();
+    const bool follows = info().key == "curve" || info().key == "crossfade";
+    EXPECT_TRUE(!follows || audible(played_by_itself(info(), silent, 48000, block)) != expected);
+  }
+}
+
+TEST_P(Vst3Notes, GivesTheMidiOfThePluginItself) {
+  const Story story = story_for_midi(info());
+  const auto played = plugin();
+  ASSERT_TRUE(played->start(48000, 512));
+  played->play(story, 480);
+  EXPECT_EQ(played->given().empty(), !info().gives_midi);
+  EXPECT_TRUE(played->given() == midi_given_by_itself(info(), story, 480));
+}
+
+TEST_P(Vst3, SurvivesAnyTimeSignature) {
+  const auto played = plugin();
+  ASSERT_TRUE(played->start(48000, 512));
+  Story story;
+  story.frames = 64;
+  for (const auto& [beats, unit] :
+       {std::pair{1, 8}, {3, 16}, {0, 0}, {4, 0}, {-1, -1}, {1, 1 << 30}}) {
+    for (const double quarters : {-1e300, -0.5, 0.0, 1e300, std::nan("")}) {
+      story.song = {{0, {120, quarters, true, true}, beats, unit}};
+      EXPECT_TRUE(is_finite(played->process(story))) << beats << '/' << unit;
+    }
+  }
+}
+
+TEST_P(Vst3Notes, ABendHasItsSteps) {
+  const auto played = plugin();
+  v3_param_info bend{};
+  const auto place = static_cast<std::int32_t>(played->of_controller(3, 129));
+  ASSERT_EQ(
+      v3_cpp_obj(played->controller())->get_parameter_info(played->controller(), place, &bend),
+      V3_OK);
+  EXPECT_EQ(bend.step_count, 16383);
+}
+
 TEST_P(Vst3Notes, AHeldNoteEndsWhereTheHostStopsChangesTheRateOrSwitchesOff) {
   Story held, quiet;
   held.frames = quiet.frames = 4800;

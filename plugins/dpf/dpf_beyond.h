@@ -24,8 +24,6 @@ class DpfBeyond {
                           std::int64_t sample) KNOTWAVE_RT = 0;
   /// Where no block follows: all points count at once. [audio]
   virtual void flush_points() KNOTWAVE_RT = 0;
-  /// The same at once, of a plugin that is switched off. [control]
-  virtual float set(std::uint32_t index, double normalized) = 0;
   /// In place of DPF's own position, of the block that run() is called with next. [audio]
   virtual void add_transport(const Transport& transport, std::int64_t sample) KNOTWAVE_RT = 0;
   virtual void hear_song(const BarsAndBeats& told, std::int64_t sample) KNOTWAVE_RT = 0;

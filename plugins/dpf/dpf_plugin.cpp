@@ -155,11 +155,6 @@ class DpfPlugin : public Plugin, public kw::DpfBeyond {
     }
     count_ = transport_count_ = 0;
   }
-  float set(std::uint32_t index, double normalized) override {
-    const double value = value_of(index, normalized);
-    inside_->set_parameter(index, value);
-    return static_cast<float>(value);
-  }
   void add_transport(const kw::Transport& transport, std::int64_t sample) KNOTWAVE_RT override {
     if (transport_count_ == transports_.size()) return;
     transports_[transport_count_] = transport;

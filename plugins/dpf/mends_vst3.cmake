@@ -159,28 +159,8 @@ foreach(what "NOTE_OFF:note_off" "NOTE_ON:note_on" "POLY_PRESSURE:poly_pressure"
             event.${field}.channel")
 endforeach()
 
-# Where MIDI is heard, the first parameter behind the controllers is taken for one: it reads as 0. And a bend has 128 steps.
-foreach(answer 0.0 V3_INVALID_ARG)
-  dpf_mend(${vst3} "            rindex <= kVst3InternalParameterMidiCC_end)
-            return ${answer};" "            rindex < kVst3InternalParameterMidiCC_end)
-            return ${answer};")
-endforeach()
+# A bend has more than 128 steps.
 dpf_mend(${vst3} "            info->step_count = 127;" "            info->step_count = index % 130 == 129 ? 16383 : 127;")
-
-# A knob that is turned while the plugin is switched off counts: no block follows that would tell it.
-dpf_mend(${vst3} "        _setNormalizedPluginParameterValue(index, normalized);
-       #endif
-
-        return V3_OK;
-" "        _setNormalizedPluginParameterValue(index, normalized);
-       #endif
-
-        const uint32_t knob = static_cast<uint32_t>(rindex - kVst3InternalParameterCount);
-        if (knob < fParameterCount && ! fPlugin.isActive())
-            fCachedParameterValues[kVst3InternalParameterBaseCount + knob] =
-                knotwave::plugins::dpf_beyond(fPlugin.getInstancePointer()).set(knob, normalized);
-        return V3_OK;
-")
 
 # The host's place in the song as it is: with digits, before the song's begin, without a time signature. DPF's way to bars
 # and beats divides by 0 where a bar is shorter than a quarter note, or the host says 0/0.

@@ -48,10 +48,26 @@ void HeldState::add(const engine::JournalRecord& record) {
     case Kind::all_notes_off:
       for (Channel& channel : channels_) channel.keys.fill(0);
       break;
+    case Kind::choke:
+      choke(record);
+      break;
     case Kind::install_bank:
     case Kind::position:  // every clock tells its own again
     case Kind::set_note:  // of a note that is gone with its engine
       break;
+  }
+}
+
+/// A number says nothing here: keys are held, not notes.
+void HeldState::choke(const engine::JournalRecord& record) {
+  if (record.note >= 0) return;
+  for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
+    if (!record.every_channel && channel != (record.bytes[0] & 15u)) continue;
+    if (record.bytes[1] == engine::Event::kEveryKey) {
+      channels_[channel].keys.fill(0);
+    } else {
+      channels_[channel].keys[record.bytes[1] & 127u] = 0;
+    }
   }
 }
 

@@ -34,6 +34,7 @@ class HeldState {
     int program = -1, pressure = -1, bend = -1;
   };
   void add_midi(const std::uint8_t* bytes);
+  void choke(const engine::JournalRecord& record);
   void add_controller(Channel& channel, int number, int value);
   void reset_controllers(Channel& channel);
   void add_channel(int number, std::vector<engine::LiveMessage>& messages) const;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <numeric>
 #include <vector>
 
@@ -82,7 +83,9 @@ class SongWriter {
         }
       }
     }
+    if (record.kind == Event::Kind::choke) choke(tick, record);
     if (record.kind != Event::Kind::midi) return;
+    if (record.note >= 0 && is_note_on(record)) numbered_[record.note] = record;
     const int status = record.bytes[0];
     if (status >= 0x80 && status < 0xF0 && ((record.bytes[1] | record.bytes[2]) & 0x80) == 0) {
       io::SongEvent& event = message(tick, status, record.bytes[1]);
@@ -98,6 +101,25 @@ class SongWriter {
   }
 
  private:
+  /// MIDI knows no choke of one key: its note ends there.
+  void choke(std::uint64_t tick, const JournalRecord& record) {
+    if (record.note >= 0) {
+      const auto on = numbered_.find(record.note);
+      if (on != numbered_.end()) end_key(tick, on->second.bytes[0] & 15, on->second.bytes[1]);
+      return;
+    }
+    for (int channel = 0; channel < 16; ++channel) {
+      if (!record.every_channel && channel != (record.bytes[0] & 15)) continue;
+      if (record.bytes[1] == Event::kEveryKey) {
+        message(tick, 0xB0 | channel, engine::kAllSoundOff);
+      } else {
+        end_key(tick, channel, record.bytes[1] & 127);
+      }
+    }
+  }
+  void end_key(std::uint64_t tick, int channel, int key) {
+    message(tick, 0x80 | channel, key).bytes[2] = 64;
+  }
   io::SongEvent& message(std::uint64_t tick, int status, int one) {
     io::SongEvent& event = song_.events.emplace_back();
     event.tick = tick;
@@ -106,6 +128,7 @@ class SongWriter {
     return event;
   }
   io::Song& song_;
+  std::map<std::int32_t, JournalRecord> numbered_;  ///< note ons
 };
 
 }  // namespace

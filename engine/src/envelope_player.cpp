@@ -90,6 +90,9 @@ void EnvelopePlayer::handle(const Event& event) KNOTWAVE_RT {
     case Event::Kind::set_target:
       s.set_target(event, time);
       break;
+    case Event::Kind::choke:
+      s.choke(event, time);
+      break;
     case Event::Kind::install_bank:
     case Event::Kind::set_note:
       break;  // of the synth

@@ -104,11 +104,13 @@ void EnvelopePlayer::State::pass_off(int channel, int key, int velocity,
 }
 
 void EnvelopePlayer::State::end_passed(int channel, base::SampleTime time) KNOTWAVE_RT {
+  for (int key = 0; key < 128; ++key) end_passed(channel, key, time);
+}
+
+void EnvelopePlayer::State::end_passed(int channel, int key, base::SampleTime time) KNOTWAVE_RT {
   if (spec.notes != NoteOutput::thru) return;
-  for (int key = 0; key < 128; ++key) {
-    pass_off(channel, key, 64, time);
-    passed[static_cast<std::size_t>(channel)][static_cast<std::size_t>(key)] = 0;
-  }
+  pass_off(channel, key, 64, time);
+  passed[static_cast<std::size_t>(channel)][static_cast<std::size_t>(key)] = 0;
 }
 
 // What a new note may take: a voice that has ended, then one let go, one a pedal holds, one a key
@@ -274,6 +276,28 @@ void EnvelopePlayer::State::silence(int channel, base::SampleTime time) KNOTWAVE
   stacks[static_cast<std::size_t>(channel)].clear();
   for (std::size_t i = 0; is_poly && i < slots.size(); ++i) {
     if (slots[i].channel == channel) close(i, time, 64);
+  }
+}
+
+// Notes have no numbers here: those of the channel and key are meant, whatever holds them. A key
+// that is down does not sound again.
+void EnvelopePlayer::State::choke(const Event& event, base::SampleTime time) KNOTWAVE_RT {
+  const int key = event.midi.bytes[1];
+  const auto is_meant = [&](int channel, int of) {
+    return (event.every_channel || channel == event.midi.channel()) &&
+           (key == Event::kEveryKey || of == key);
+  };
+  for (int channel = 0; channel < 16; ++channel) {
+    for (int of = 0; of < 128; ++of) {
+      if (is_meant(channel, of)) end_passed(channel, of, time);
+    }
+    if (event.every_channel || channel == event.midi.channel()) {
+      stacks[static_cast<std::size_t>(channel)].remove(key, Event::kNoNote);
+    }
+  }
+  if (trigger.kind != TriggerSpec::Kind::note || is_by_hand) return;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (is_meant(slots[i].channel, slots[i].key)) close(i, time, 64);
   }
 }
 

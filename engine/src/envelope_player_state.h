@@ -56,6 +56,7 @@ struct EnvelopePlayer::State {
   void pass_on(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT;
   void pass_off(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT;
   void end_passed(int channel, base::SampleTime time) KNOTWAVE_RT;
+  void end_passed(int channel, int key, base::SampleTime time) KNOTWAVE_RT;
   void play_poly(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT;
   void play_mono(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT;
   struct Chosen {
@@ -75,6 +76,7 @@ struct EnvelopePlayer::State {
   void update_pedals(int channel, base::SampleTime time) KNOTWAVE_RT;
   void lift_keys(int channel, base::SampleTime time) KNOTWAVE_RT;
   void silence(int channel, base::SampleTime time) KNOTWAVE_RT;
+  void choke(const Event& event, base::SampleTime time) KNOTWAVE_RT;
   void follow_gate(int channel, base::SampleTime time) KNOTWAVE_RT;
   void follow_loop(base::SampleTime time) KNOTWAVE_RT;
   void take_trigger(bool by_hand, base::SampleTime time) KNOTWAVE_RT;

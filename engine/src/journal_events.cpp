@@ -26,6 +26,8 @@ std::vector<Event> journal_events(const Journal& journal) {
       event.number = record.number;
       event.every_channel = record.every_channel;
       event.is_expression = record.is_expression;
+    } else if (record.kind == Event::Kind::choke) {
+      event.every_channel = record.every_channel;
     } else if (record.kind == Event::Kind::position) {
       event.song_clocks = static_cast<std::int64_t>(record.number);
     }

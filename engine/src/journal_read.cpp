@@ -54,6 +54,7 @@ class Reader {
   void read_midi(JournalRecord& record);
   void read_target(JournalRecord& record);
   void read_set_note(JournalRecord& record);
+  void read_note(JournalRecord& record);
   void read_channel(JournalRecord& record);
   void read_slot(JournalRecord& record);
 
@@ -298,6 +299,9 @@ void Reader::read_record(const Journal& journal, JournalRecord& record) {
   } else if (what == "modulation" || what == "expression") {
     record.is_expression = what == "expression";
     read_set_note(record);
+  } else if (what == "choke") {
+    record.kind = Event::Kind::choke;
+    read_note(record);
   } else if (what == "tempo") {
     record.kind = Event::Kind::tempo;
     record.number = real("microseconds per quarter note");
@@ -322,8 +326,8 @@ void Reader::read_record(const Journal& journal, JournalRecord& record) {
     read_target(record);
   } else {
     fault(ErrorCode::unknown_name,
-          "'midi', 'numbered', 'tempo', 'position', 'bank', 'notes_off', 'target', 'modulation' or "
-          "'expression' must be here after a time");
+          "'midi', 'numbered', 'tempo', 'position', 'bank', 'notes_off', 'target', "
+          "'modulation', 'expression' or 'choke' must be here after a time");
   }
 }
 
@@ -354,6 +358,11 @@ void Reader::read_channel(JournalRecord& record) {
 
 void Reader::read_set_note(JournalRecord& record) {
   record.kind = Event::Kind::set_note;
+  read_note(record);
+  read_slot(record);
+}
+
+void Reader::read_note(JournalRecord& record) {
   if (skip(kNoteWord)) {
     record.note = number<std::int32_t>("a note's number", 0, kMaxNote);
   } else {
@@ -361,7 +370,6 @@ void Reader::read_set_note(JournalRecord& record) {
     record.bytes[1] = skip(kEveryWord) ? static_cast<std::uint8_t>(Event::kEveryKey)
                                        : static_cast<std::uint8_t>(number("a key", 0, 127));
   }
-  read_slot(record);
 }
 
 void Reader::read_slot(JournalRecord& record) {

@@ -136,6 +136,10 @@ class Writer {
         out_ += ' ';
         put_double(record.number);
         break;
+      case Event::Kind::choke:
+        out_ += " choke ";
+        write_note(record);
+        break;
     }
     out_ += '\n';
   }

@@ -28,6 +28,7 @@ void LiveEngine::State::process(std::int64_t time_ns, std::span<const Event> exa
   for (const auto& input : inputs) input->begin_block(clock, first);
   tap.begin_block();
   event_count = 0;
+  ended_count = 0;
   take_bank();
   if (panic.exchange(false, std::memory_order_relaxed)) add_panic();
   while (engine->now() < end) {
@@ -36,6 +37,9 @@ void LiveEngine::State::process(std::int64_t time_ns, std::span<const Event> exa
     const auto n = static_cast<std::size_t>(until - engine->now());
     engine->process(std::span(events).first(event_count), left.subspan(at, n),
                     right.subspan(at, n));
+    for (const EndedNote& note : engine->ended_notes()) {
+      if (ended_count < ended.size()) ended[ended_count++] = note;
+    }
     event_count = 0;
   }
   tap.write(first, left, right);
@@ -235,6 +239,10 @@ void LiveEngine::State::record(const Event& event) KNOTWAVE_RT {
       break;
     case Event::Kind::position:
       record.number = static_cast<double>(event.song_clocks);
+      break;
+    case Event::Kind::choke:
+      record.bytes[0] = static_cast<std::uint8_t>(event.midi.channel());
+      record.every_channel = event.every_channel;
       break;
     case Event::Kind::all_notes_off:
       break;

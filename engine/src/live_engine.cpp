@@ -61,7 +61,8 @@ LiveEngine::State::State(const LiveConfig& live_config)
       journal(static_cast<std::size_t>(config.journal_records)),
       tap(static_cast<std::size_t>(config.tap_s * config.engine.rate_hz)),
       events(kEventsAtOnce),
-      sysex(kEventsAtOnce) {
+      sysex(kEventsAtOnce),
+      ended(2 * Engine::kMostNotesAtOnce) {
   for (auto& input : inputs) input = std::make_unique<LiveInput>(config.input_messages);
 }
 
@@ -75,7 +76,7 @@ LiveEngine::LiveEngine(std::unique_ptr<State> state) : state_(std::move(state)) 
 LiveEngine::~LiveEngine() = default;
 
 std::span<const EndedNote> LiveEngine::ended_notes() const KNOTWAVE_RT {
-  return state_->engine->ended_notes();
+  return std::span(state_->ended).first(state_->ended_count);
 }
 bool LiveEngine::is_idle() const KNOTWAVE_RT { return state_->engine->is_idle(); }
 double LiveEngine::rate_hz() const KNOTWAVE_RT { return state_->config.engine.rate_hz; }

@@ -73,6 +73,8 @@ struct LiveEngine::State {
   std::vector<Event> events;  ///< [kEventsAtOnce], and so is sysex
   std::vector<std::array<std::uint8_t, LiveMessage::kMaxSysex>> sysex;
   std::size_t event_count = 0;
+  std::vector<EndedNote> ended;  ///< of the block
+  std::size_t ended_count = 0;
   std::int64_t exact_messages = 0;
   LiveStatus status;
 

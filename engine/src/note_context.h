@@ -24,7 +24,8 @@ struct NoteContext {
   double pressure = 0;  ///< the note's own, by set_note
   double timbre = -1;   ///< the note's own, by set_note; -1: the channel's
   std::int32_t number = Event::kNoNote;
-  double note = 60;  ///< what sounds, transposition included
+  std::uint64_t serial = 0;  ///< of its note on: which note it is
+  double note = 60;          ///< what sounds, transposition included
   int key = 60;
   int velocity = 100;
   int release_velocity = 64;

@@ -6,11 +6,18 @@
 namespace knotwave::engine {
 
 void NoteStack::erase(int index) KNOTWAVE_RT {
+  const Entry& entry = entries_[static_cast<std::size_t>(index)];
+  if (entry.serial != 0 && gone_count_ < gone_.size()) gone_[gone_count_++] = entry;
   std::copy(entries_.begin() + index + 1, entries_.begin() + size_, entries_.begin() + index);
   --size_;
 }
 
-void NoteStack::press(int key, int velocity, std::int32_t number) KNOTWAVE_RT {
+void NoteStack::clear() KNOTWAVE_RT {
+  while (size_ > 0) erase(size_ - 1);
+}
+
+void NoteStack::press(int key, int velocity, std::int32_t number,
+                      std::uint64_t serial) KNOTWAVE_RT {
   bool sostenuto = false;
   for (int i = 0; i < size_; ++i) {
     if (entries_[static_cast<std::size_t>(i)].key != key) continue;
@@ -19,8 +26,11 @@ void NoteStack::press(int key, int velocity, std::int32_t number) KNOTWAVE_RT {
     break;
   }
   entries_[static_cast<std::size_t>(size_++)] = {static_cast<std::uint8_t>(key & 127),
-                                                 static_cast<std::uint8_t>(velocity & 127), true,
-                                                 sostenuto, number};
+                                                 static_cast<std::uint8_t>(velocity & 127),
+                                                 true,
+                                                 sostenuto,
+                                                 number,
+                                                 serial};
 }
 
 bool NoteStack::lift(int key, bool sustain, std::int32_t number) KNOTWAVE_RT {
@@ -41,6 +51,26 @@ bool NoteStack::lift(int key, bool sustain, std::int32_t number) KNOTWAVE_RT {
 bool NoteStack::holds(std::int32_t number) const KNOTWAVE_RT {
   return std::any_of(entries_.begin(), entries_.begin() + size_,
                      [number](const Entry& entry) { return entry.number == number; });
+}
+
+bool NoteStack::is_down(std::int32_t number) const KNOTWAVE_RT {
+  return std::any_of(entries_.begin(), entries_.begin() + size_, [number](const Entry& entry) {
+    return entry.key_down && entry.number == number;
+  });
+}
+
+bool NoteStack::knows(std::uint64_t serial) const KNOTWAVE_RT {
+  const auto is_it = [serial](const Entry& entry) { return entry.serial == serial; };
+  return std::any_of(entries_.begin(), entries_.begin() + size_, is_it) ||
+         std::any_of(gone().begin(), gone().end(), is_it);
+}
+
+void NoteStack::remove(int key, std::int32_t number) KNOTWAVE_RT {
+  for (int i = size_ - 1; i >= 0; --i) {
+    const Entry& entry = entries_[static_cast<std::size_t>(i)];
+    const bool is_key = key == Event::kEveryKey || entry.key == key;
+    if (number >= 0 ? entry.number == number : is_key) erase(i);
+  }
 }
 
 void NoteStack::drop_if(bool sustain) KNOTWAVE_RT {

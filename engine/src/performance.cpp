@@ -18,7 +18,7 @@ Performance::Performance(const EngineConfig& config)
       slots_(config.max_voices),
       voices_(2 * static_cast<std::size_t>(config.max_voices)),
       note_targets_(voices_.size()),
-      ended_notes_(2 * voices_.size()),
+      ended_notes_(voices_.size() + kChannels * 128 + Engine::kMostNotesAtOnce),
       release_times_(voices_.size()) {}
 
 void Performance::reset(const BankProgram* bank) KNOTWAVE_RT {
@@ -29,6 +29,7 @@ void Performance::reset(const BankProgram* bank) KNOTWAVE_RT {
   zones_.reset();
   for (Mono& mono : monos_) {
     mono.stack.clear();
+    mono.stack.forget_gone();
     mono.slot = -1;
     mono.patch = nullptr;
   }
@@ -40,6 +41,7 @@ void Performance::reset(const BankProgram* bank) KNOTWAVE_RT {
   master_gain_ = 1;
   next_note_ = 0;
   ended_count_ = 0;
+  serial_ = 0;
   next_group_ = kNever;
   next_group_start_ = 0;
   slots_.clear();
@@ -53,7 +55,8 @@ Performance::Reach Performance::reach_of(const Event& event) const KNOTWAVE_RT {
   if (event.kind == Event::Kind::set_target) {
     return {event.every_channel ? Voices::all : Voices::channel, false, channel, 0};
   }
-  if (event.kind == Event::Kind::set_note) return {};  // it brings those it changes
+  // These bring those they change.
+  if (event.kind == Event::Kind::set_note || event.kind == Event::Kind::choke) return {};
   if (event.kind != Event::Kind::midi) return everything;
   switch (event.midi.status()) {
     case base::MidiStatus::note_on: {
@@ -105,10 +108,14 @@ void Performance::handle(const Event& event, base::SampleTime time,
     case Event::Kind::set_note:
       set_note(event, time);
       break;
+    case Event::Kind::choke:
+      choke(event, time);
+      break;
     case Event::Kind::position:
       tempo_.set_position(time, static_cast<double>(event.song_clocks) / kSongClocksPerQuarter);
       break;
   }
+  tell_gone();
 }
 
 void Performance::set_target(const Event& event, base::SampleTime time) KNOTWAVE_RT {
@@ -376,7 +383,7 @@ void Performance::collect(int index) KNOTWAVE_RT {
   counters_.joins_limited += voice(index).take_limited_joins();
   if (!voice(index).is_done()) return;
   slot.state = VoiceSlot::State::free;
-  end_number(slot.channel, slot.key, slot.number);
+  part_from(slot);
 }
 
 }  // namespace knotwave::engine

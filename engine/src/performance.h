@@ -87,7 +87,7 @@ class Performance {
   EngineCounters& counters() KNOTWAVE_RT { return counters_; }
   const EngineCounters& counters() const KNOTWAVE_RT { return counters_; }
 
-  /// Numbered notes that were heard to their end since forget_ended_notes().
+  /// As Engine::ended_notes(), since forget_ended_notes().
   std::span<const EndedNote> ended_notes() const KNOTWAVE_RT {
     return std::span(ended_notes_).first(ended_count_);
   }
@@ -153,7 +153,17 @@ class Performance {
   // performance_numbered.cpp: notes that the player numbers
   void set_note(const Event& event, base::SampleTime time) KNOTWAVE_RT;
   void set_note(int index, const Event& event, std::int64_t sample) KNOTWAVE_RT;
-  void end_number(int channel, int key, std::int32_t number) KNOTWAVE_RT;
+  void choke(const Event& event, base::SampleTime time) KNOTWAVE_RT;
+  /// Of a numbered note whose key is down in a monophonic patch; else `channel`.
+  int channel_of(std::int32_t number, int channel) const KNOTWAVE_RT;
+
+  // performance_ends.cpp: the end of every note, told once
+  void tell_end(int channel, int key, std::int32_t number) KNOTWAVE_RT;
+  /// The voice plays its note no more. The end is told unless its key or another voice keeps it.
+  void part_from(VoiceSlot& slot) KNOTWAVE_RT;
+  bool is_played(std::uint64_t serial) const KNOTWAVE_RT;
+  /// Of notes that no key holds any more, unless a voice still plays them.
+  void tell_gone() KNOTWAVE_RT;
   /// A mono voice goes on with another note: what was said of the one before glides back.
   void renumber(int index, NoteContext& note, std::int64_t sample) KNOTWAVE_RT;
   /// The note of the voice at `index` reads its own targets.
@@ -193,6 +203,7 @@ class Performance {
   TempoClock tempo_;
   double master_gain_ = 1;
   std::int32_t number_ = Event::kNoNote;  ///< of the event being handled
+  std::uint64_t serial_ = 0;              ///< of the last note on
   std::uint64_t next_note_ = 0;
   VoiceSlots slots_;
   std::vector<Voice> voices_;

@@ -50,6 +50,7 @@ void Performance::carry_group_over(std::int64_t now, VoiceUpkeep& upkeep) KNOTWA
   upkeep_ = &upkeep;
   next_group_ = now;
   carry_group_over();
+  tell_gone();
 }
 
 void Performance::carry_group_over() KNOTWAVE_RT {
@@ -99,7 +100,7 @@ void Performance::carry_over(int index, base::SampleTime time) KNOTWAVE_RT {
   slot.is_mono = was_mono && play_mode(old.channel, choice) != PlayMode::poly;
   note_targets_[static_cast<std::size_t>(fresh)] = note_targets_[static_cast<std::size_t>(index)];
   own_targets(fresh, start.note);
-  slots_.at(index).number = Event::kNoNote;  // it goes on
+  slots_.at(index).serial = 0;  // it goes on
   voice(fresh).start(start, tempo_);
   upkeep_->add(fresh);
   voice(fresh).fade_in(base::first_sample(time), kInstallFadeSeconds);

@@ -76,7 +76,6 @@ bool Performance::tie_to_source(int channel, int key, int velocity,
   }
   if (tied < 0) return false;
   VoiceSlot& slot = slots_.at(tied);
-  slot.key = key;
   slot.key_down = true;
   slot.pedal_held = false;
   const double seconds = portamento(channel, choice, key, source, true).seconds;

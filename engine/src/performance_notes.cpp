@@ -8,6 +8,7 @@
 namespace knotwave::engine {
 
 void Performance::note_on(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT {
+  ++serial_;
   const int master = zones_.master_of(channel);
   const int source = channels_[static_cast<std::size_t>(channel)].take_portamento_source();
   const ChannelState& programs = channels_[static_cast<std::size_t>(master)];
@@ -16,6 +17,7 @@ void Performance::note_on(int channel, int key, int velocity, base::SampleTime t
   if (choice.patch == nullptr) {
     count_missing({master, programs.bank_msb(), programs.bank_lsb(), programs.program(),
                    choice.drum ? key : -1});
+    tell_end(channel, key, number_);
     return;
   }
   channels_[static_cast<std::size_t>(channel)].forget_poly_pressure(key);
@@ -47,11 +49,9 @@ void Performance::count_missing(const MissingPatch& missing) KNOTWAVE_RT {
 }
 
 void Performance::note_off(int channel, int key, int velocity, base::SampleTime time) KNOTWAVE_RT {
+  channel = channel_of(number_, channel);
   Mono& mono = monos_[static_cast<std::size_t>(channel)];
   if (mono.stack.lift(key, sustains(channel), number_)) {
-    if (!mono_sounds(mono, channel) || slots_.at(mono.slot).number != number_) {
-      end_number(channel, key, number_);
-    }
     settle_mono(channel, time, velocity);
     return;
   }
@@ -105,6 +105,7 @@ NoteContext Performance::context(int channel, int key, int velocity,
   note.key = key;
   note.velocity = velocity;
   note.number = number_;
+  note.serial = serial_;
   note.random = {choice.patch->spec().seed ^ config_.seed, number, base::kRandomMap};
   return note;
 }
@@ -139,6 +140,7 @@ int Performance::begin(int channel, const NoteContext& note, const BankProgram::
   slot.bank = bank_;
   slot.age = next_note_;
   slot.number = note.number;
+  slot.serial = note.serial;
   note_targets_[static_cast<std::size_t>(index)].modulation.reset(config_.rate_hz);
   note_targets_[static_cast<std::size_t>(index)].expression.reset(config_.rate_hz);
   Voice::Start start;
@@ -174,8 +176,9 @@ void Performance::play_poly(int channel, int key, int velocity, const BankProgra
     }
   }
   const auto number = static_cast<std::uint32_t>(next_note_);
-  begin(channel, context(channel, key, velocity, choice, number), choice, time,
-        portamento(channel, choice, key, source, true));
+  const int index = begin(channel, context(channel, key, velocity, choice, number), choice, time,
+                          portamento(channel, choice, key, source, true));
+  if (index < 0) tell_end(channel, key, number_);
   ++next_note_;
 }
 
@@ -191,7 +194,7 @@ void Performance::play_mono(int channel, int key, int velocity, const BankProgra
   mono.patch = choice.patch;
   mono.mode = play_mode(channel, choice);
   mono.is_drum = choice.drum;
-  mono.stack.press(key, velocity, number_);
+  mono.stack.press(key, velocity, number_, serial_);
   const NoteStack::Entry* chosen = mono.stack.choose(choice.patch->spec().priority);
   const bool sounds = mono_sounds(mono, channel);
   if (sounds && chosen->key != key) return;  // an older key has priority
@@ -209,7 +212,6 @@ void Performance::play_mono(int channel, int key, int velocity, const BankProgra
   const bool joins = !is_source && (mono.mode == PlayMode::mono || !tied);
   const Portamento path =
       portamento(channel, choice, key, source, !joins || mono.mode == PlayMode::mono);
-  slot.key = key;
   slot.key_down = true;
   renumber(mono.slot, note, base::first_sample(time));
   brought(mono.slot).play(note, time, joins, is_source ? Portamento{path.seconds, {}} : path,
@@ -235,7 +237,7 @@ void Performance::settle_mono(int channel, base::SampleTime time,
   note.key = chosen->key;
   note.velocity = chosen->velocity;
   note.number = chosen->number;
-  slot.key = chosen->key;
+  note.serial = chosen->serial;
   renumber(mono.slot, note, base::first_sample(time));
   brought(mono.slot).play(note, time, mono.mode == PlayMode::mono,
                           portamento(channel, *mono.patch, mono.is_drum, true), tempo_);

@@ -31,16 +31,27 @@ void Performance::renumber(int index, NoteContext& note, std::int64_t sample) KN
   own_targets(index, note);
   note.pressure = 0;
   note.timbre = -1;
-  const Mono& mono = monos_[static_cast<std::size_t>(slot.channel)];
-  if (slot.number != note.number && !mono.stack.holds(slot.number)) {
-    end_number(slot.channel, slot.key, slot.number);
-  }
+  if (slot.serial != note.serial) part_from(slot);
+  slot.key = note.key;
   slot.number = note.number;
+  slot.serial = note.serial;
 }
 
-void Performance::end_number(int channel, int key, std::int32_t number) KNOTWAVE_RT {
-  if (number < 0 || ended_count_ == ended_notes_.size()) return;
-  ended_notes_[ended_count_++] = {number, channel, key};
+int Performance::channel_of(std::int32_t number, int channel) const KNOTWAVE_RT {
+  for (int c = 0; number >= 0 && c < kChannels; ++c) {
+    if (monos_[static_cast<std::size_t>(c)].stack.is_down(number)) return c;
+  }
+  return channel;
+}
+
+void Performance::choke(const Event& event, base::SampleTime time) KNOTWAVE_RT {
+  for (int channel = 0; channel < kChannels; ++channel) {
+    if (event.note < 0 && !event.every_channel && channel != event.midi.channel()) continue;
+    monos_[static_cast<std::size_t>(channel)].stack.remove(event.midi.bytes[1], event.note);
+  }
+  for (int i = 0; i < static_cast<int>(slots_.all().size()); ++i) {
+    if (means(event, slots_.at(i))) fade(i, time, kStealFadeSeconds);
+  }
 }
 
 void Performance::set_note(const Event& event, base::SampleTime time) KNOTWAVE_RT {

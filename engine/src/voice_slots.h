@@ -26,6 +26,7 @@ struct VoiceSlot {
   int key = 0;
   int choke_group = 0;
   std::int32_t number = Event::kNoNote;  ///< the player's own of the note
+  std::uint64_t serial = 0;              ///< of the note it plays; 0: that went to another place
   const PatchProgram* patch = nullptr;
   const BankProgram* bank = nullptr;
   std::uint64_t age = 0;  ///< number of its note: smaller is older

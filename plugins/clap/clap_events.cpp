@@ -26,25 +26,44 @@ int seven_bits(double unit) KNOTWAVE_RT {
   return unit == unit ? static_cast<int>(std::floor(std::clamp(unit, 0.0, 1.0) * 127 + 0.5)) : 0;
 }
 
-/// A channel or key of -1 means all of them: keys are then lifted or silenced by the channel.
-void end_notes(Plugin& plugin, const clap_event_note& note) KNOTWAVE_RT {
-  const bool chokes = note.header.type == CLAP_EVENT_NOTE_CHOKE;
-  const int first = note.channel < 0 ? 0 : note.channel;
-  const int last = note.channel < 0 ? kChannels - 1 : note.channel;
-  for (int channel = first; channel <= last && channel < kChannels; ++channel) {
+/// Of one number, or of a channel and a key, -1: of all.
+void address(engine::Event& event, std::int32_t note, int channel, int key) KNOTWAVE_RT {
+  event.midi.bytes[0] = static_cast<std::uint8_t>(std::max(channel, 0) & 15);
+  event.midi.bytes[1] =
+      key < 0 ? std::uint8_t{engine::Event::kEveryKey} : static_cast<std::uint8_t>(key & 127);
+  event.every_channel = channel < 0;
+  event.note = note;
+}
+
+bool is_address(int channel, int key) KNOTWAVE_RT { return channel < kChannels && key < 128; }
+
+/// Keys of -1 are lifted by the channel.
+void lift_notes(Plugin& plugin, const clap_event_note& note) KNOTWAVE_RT {
+  if (!is_address(note.channel, note.key)) return;
+  const bool is_one = note.note_id >= 0;
+  const int first = std::max<int>(note.channel, 0);
+  const int last = note.channel < 0 && !is_one ? kChannels - 1 : first;
+  for (int channel = first; channel <= last; ++channel) {
     engine::Event event;
-    if (note.note_id >= 0 || (note.key >= 0 && note.key < 128)) {
+    if (is_one || note.key >= 0) {
       event = midi_event(note.header.time, 0x80 | channel, std::max<int>(note.key, 0),
                          seven_bits(note.velocity));
       event.note = note.note_id;
-    } else if (note.key < 0) {
-      event = midi_event(note.header.time, 0xB0 | channel,
-                         chokes ? engine::kAllSoundOff : engine::kAllNotesOff, 0);
+      event.every_channel = note.channel < 0;
     } else {
-      return;
+      event = midi_event(note.header.time, 0xB0 | channel, engine::kAllNotesOff, 0);
     }
     plugin.add(event);
   }
+}
+
+void choke_notes(Plugin& plugin, const clap_event_note& note) KNOTWAVE_RT {
+  if (!is_address(note.channel, note.key)) return;
+  engine::Event event;
+  event.kind = engine::Event::Kind::choke;
+  event.midi.time.sample = note.header.time;
+  address(event, note.note_id, note.channel, note.key);
+  plugin.add(event);
 }
 
 /// A velocity of 0 is a note still.
@@ -102,14 +121,11 @@ Said said(const clap_event_note_expression& expression) KNOTWAVE_RT {
 
 void express(Plugin& plugin, const clap_event_note_expression& expression) KNOTWAVE_RT {
   const Said what = said(expression);
-  if (what.slot < 0 || expression.channel >= kChannels || expression.key > 127) return;
-  engine::Event event = midi_event(expression.header.time, 0, 0, 0);
+  if (what.slot < 0 || !is_address(expression.channel, expression.key)) return;
+  engine::Event event;
   event.kind = engine::Event::Kind::set_note;
-  event.midi.bytes[0] = static_cast<std::uint8_t>(std::max<int>(expression.channel, 0));
-  event.midi.bytes[1] = expression.key < 0 ? std::uint8_t{engine::Event::kEveryKey}
-                                           : static_cast<std::uint8_t>(expression.key);
-  event.every_channel = expression.channel < 0;
-  event.note = expression.note_id;
+  event.midi.time.sample = expression.header.time;
+  address(event, expression.note_id, expression.channel, expression.key);
   event.is_expression = true;
   event.slot = static_cast<std::uint16_t>(what.slot);
   event.number = what.number;
@@ -145,8 +161,10 @@ void add_clap_event(Plugin& plugin, const clap_event_header& header) KNOTWAVE_RT
       if (const auto* note = as<clap_event_note>(header)) begin_note(plugin, *note);
       break;
     case CLAP_EVENT_NOTE_OFF:
+      if (const auto* note = as<clap_event_note>(header)) lift_notes(plugin, *note);
+      break;
     case CLAP_EVENT_NOTE_CHOKE:
-      if (const auto* note = as<clap_event_note>(header)) end_notes(plugin, *note);
+      if (const auto* note = as<clap_event_note>(header)) choke_notes(plugin, *note);
       break;
     case CLAP_EVENT_PARAM_VALUE:
       if (const auto* value = as<clap_event_param_value>(header)) {

@@ -14,7 +14,7 @@ void set_clap_parameters(Plugin& plugin, const clap_input_events& events) KNOTWA
 /// Tempo and place in the song from that sample on. [audio]
 void add_clap_transport(Plugin& plugin, const clap_event_transport& transport,
                         std::int64_t sample) KNOTWAVE_RT;
-/// Where the block ends. [audio]
+/// At that sample of the block. [audio]
 void give_clap_ends(std::span<const engine::EndedNote> notes, std::uint32_t sample,
                     const clap_output_events& out) KNOTWAVE_RT;
 /// As MIDI of the host's first note port. [audio]

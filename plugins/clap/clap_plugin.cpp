@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "clap_plugin.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <memory>
@@ -122,17 +123,26 @@ clap_process_status process(const clap_plugin* plugin, const clap_process* block
   }
   inside.begin({{in.data(), ins}, {out.data(), outs}, block->frames_count});
   if (block->transport != nullptr) add_clap_transport(inside, *block->transport, 0);
+  const std::uint32_t last = block->frames_count == 0 ? 0 : block->frames_count - 1;
+  const auto give_ends = [&](std::uint32_t sample) {
+    if (inside.ended_notes().empty()) return;
+    if (block->out_events != nullptr) {
+      give_clap_ends(inside.ended_notes(), std::min(sample, last), *block->out_events);
+    }
+    inside.forget_ended_notes();
+  };
   const std::uint32_t count = block->in_events->size(block->in_events);
   for (std::uint32_t i = 0; i < count; ++i) {
     const clap_event_header* header = block->in_events->get(block->in_events, i);
-    if (header != nullptr) add_clap_event(inside, *header);
+    if (header == nullptr) continue;
+    add_clap_event(inside, *header);
+    give_ends(header->time);
   }
   inside.render();
-  if (block->out_events != nullptr) {
-    if (info.gives_midi) give_clap_events(inside.midi_out(), *block->out_events);
-    const std::uint32_t last = block->frames_count == 0 ? 0 : block->frames_count - 1;
-    give_clap_ends(inside.ended_notes(), last, *block->out_events);
+  if (block->out_events != nullptr && info.gives_midi) {
+    give_clap_events(inside.midi_out(), *block->out_events);
   }
+  give_ends(last);
   for (std::uint32_t i = 0; i < block->audio_outputs_count; ++i) {
     block->audio_outputs[i].constant_mask = 0;
   }

@@ -205,7 +205,14 @@ void EnvelopePlugin::set_side_chain() KNOTWAVE_RT {
 
 void EnvelopePlugin::add(const Event& event) KNOTWAVE_RT {
   hear_side_chain(event.time().sample);
-  tell(event, event.time().sample);
+  if (event.kind != Event::Kind::midi || !event.every_channel) {
+    return tell(event, event.time().sample);
+  }
+  Event one = event;  // its keys have no numbers
+  for (int channel = 0; channel < 16; ++channel) {
+    one.midi.bytes[0] = static_cast<std::uint8_t>((event.midi.bytes[0] & 0xF0) | channel);
+    tell(one, event.time().sample);
+  }
 }
 
 void EnvelopePlugin::add_parameter(std::size_t place, double value,

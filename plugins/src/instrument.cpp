@@ -21,11 +21,13 @@ constexpr double kMostQuarters = 1e9;
 constexpr int kNoMessages = 16;
 constexpr int kNoJournal = 16;
 constexpr double kNoTapSeconds = 0.01;
+/// The notes that live and those that begin in a part of a block, with room to spare.
+constexpr std::size_t kMostEnded = 2 * engine::Engine::kMostNotesAtOnce;
 
 }  // namespace
 
 Instrument::Instrument(const InstrumentConfig& config)
-    : config_(config), events_(kEventsAtOnce), ended_(kEventsAtOnce) {
+    : config_(config), events_(kEventsAtOnce), ended_(kMostEnded) {
   if (auto spec = engine::read_bank(factory_presets()[0].path, factory_files())) {
     spec_ = *std::move(spec);
   }
@@ -89,6 +91,7 @@ Result<void> Instrument::activate(double rate_hz) {
   modulation_.fill(0);
   tempo_microseconds_ = 500000;
   is_playing_ = is_song_due_ = false;
+  event_count_ = 0;
   return {};
 }
 
@@ -111,7 +114,7 @@ void Instrument::begin(const Block& block) KNOTWAVE_RT {
 void Instrument::begin(std::span<float> left, std::span<float> right) KNOTWAVE_RT {
   left_ = left;
   right_ = right;
-  done_ = event_count_ = 0;
+  done_ = 0;  // events that waited stay
   ended_count_ = 0;
   values_.take_news([this](std::size_t place, double) { push_parameter(place, 0); });
 }
@@ -147,7 +150,8 @@ void Instrument::place(const Event& event) KNOTWAVE_RT {
     const auto at = static_cast<std::size_t>(std::max<std::int64_t>(event.time().sample, 0));
     render_until(std::min(std::max(at, done_ + 1), left_.size()));
   }
-  if (event_count_ == events_.size()) return;  // a block without a sample left
+  const bool waits = done_ == left_.size();  // for the next block, and its bytes would not
+  if (event_count_ == events_.size() || (waits && event.midi.sysex != nullptr)) return;
   Event& added = events_[event_count_++];
   added = event;
   added.midi.time.sample =
@@ -239,6 +243,7 @@ void Instrument::render() KNOTWAVE_RT {
 
 /// Notes end within 5 ms, which nobody hears.
 void Instrument::reset() KNOTWAVE_RT {
+  event_count_ = 0;
   constexpr std::size_t kPart = 64;
   constexpr double kFadeSeconds = 0.0055;
   std::array<float, kPart> left, right;

@@ -82,8 +82,8 @@ std::vector<Event> crowded_journal(std::uint64_t seed, int count, std::int64_t f
     } else if (kind == 15) {
       event = of_kind(sample, Event::Kind::install_bank);
       event.bank = draw(4, 2) == 0 ? &one : &two;
-    } else if (kind < 24) {
-      event = of_kind(sample, Event::Kind::set_note);
+    } else if (kind < 24 || kind == 39) {
+      event = of_kind(sample, kind == 39 ? Event::Kind::choke : Event::Kind::set_note);
       event.midi.bytes[0] = static_cast<std::uint8_t>(channel);
       constexpr int kKeys[] = {40, 47, 60, Event::kEveryKey};
       event.midi.bytes[1] = static_cast<std::uint8_t>(kKeys[draw(4, 4)]);

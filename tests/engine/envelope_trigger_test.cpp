@@ -56,6 +56,31 @@ std::string gate_edges(const std::string& trigger, std::int64_t until,
 
 // Triggers.
 
+Event choke(std::int64_t sample, int channel, int key) {
+  Event event;
+  event.kind = Event::Kind::choke;
+  event.midi.time.sample = sample;
+  event.midi.bytes[0] = static_cast<std::uint8_t>(channel);
+  event.midi.bytes[1] = static_cast<std::uint8_t>(key);
+  return event;
+}
+
+TEST(EnvelopeTrigger, AChokeClosesTheGateOfItsKeyWhateverHoldsIt) {
+  const auto choked_at = [](int channel, int key) {
+    return gate_edges("", 1000, [&](EnvelopeRig& rig) {
+      rig.midi(0, 0xB0, 64, 127);
+      rig.midi(100, 0x90, 60, 100);
+      rig.midi(200, 0x90, 64, 100);
+      rig.midi(300, 0x80, 64, 0);
+      rig.add(choke(400, channel, key));
+    });
+  };
+  EXPECT_EQ(choked_at(0, 61), "100+");
+  EXPECT_EQ(choked_at(1, 60), "100+");
+  EXPECT_EQ(choked_at(0, 60), "100+ 400-");
+  EXPECT_EQ(choked_at(0, Event::kEveryKey), "100+ 400-");
+}
+
 TEST(EnvelopeTrigger, NotesOfItsChannelAndKeysAlone) {
   EXPECT_EQ(gate_edges("channel = 3\nkeys = [40, 50]\n", 1000,
                        [](EnvelopeRig& rig) {

@@ -33,7 +33,7 @@ bool is_same(const JournalRecord& a, const JournalRecord& b) {
 JournalRecord random_record(const base::RandomStream& random, std::uint64_t& draw) {
   JournalRecord record;
   const std::uint64_t bits = random.bits(draw++);
-  record.kind = static_cast<Event::Kind>(bits % 7);
+  record.kind = static_cast<Event::Kind>(bits % 8);
   if ((bits >> 8 & 3) == 0) record.time.fraction = static_cast<std::uint32_t>(bits >> 32);
   switch (record.kind) {
     case Event::Kind::midi:
@@ -54,6 +54,16 @@ JournalRecord random_record(const base::RandomStream& random, std::uint64_t& dra
       record.index = static_cast<std::uint32_t>(bits >> 20 & 1);
       break;
     case Event::Kind::all_notes_off:
+      break;
+    case Event::Kind::choke:
+      if ((bits >> 26 & 1) != 0) {
+        record.note = static_cast<std::int32_t>(bits >> 33);
+        break;
+      }
+      record.every_channel = (bits >> 24 & 1) != 0;
+      if (!record.every_channel) record.bytes[0] = static_cast<std::uint8_t>(bits >> 20 & 15);
+      record.bytes[1] = static_cast<std::uint8_t>(bits >> 56 & 0xFF);
+      if (record.bytes[1] > 127) record.bytes[1] = Event::kEveryKey;
       break;
     case Event::Kind::set_note:
       record.is_expression = (bits >> 25 & 1) != 0;
@@ -171,6 +181,10 @@ TEST(Journal, IsTheTextThatTheDocumentShows) {
   record.index = Event::kNotePressure;
   record.number = 0.75;
   journal.records.push_back(record);
+  record.time.sample = 4000;
+  record.kind = Event::Kind::choke;
+  record.bytes[1] = Event::kEveryKey;
+  journal.records.push_back(record);
   record = {};
   record.time.sample = 24000;
   record.kind = Event::Kind::position;
@@ -201,6 +215,7 @@ events
 2000 numbered 17 90 40 64
 2000 expression note 17 pitch 0.5
 3000 modulation 3 60 pressure 0.75
+4000 choke 3 every
 24000 position 96
 48000 notes_off
 end
@@ -235,9 +250,7 @@ TEST(Journal, TellsWhatIsWrongAndWhere) {
        "t:10:1: error: a time must be here: a sample, or SAMPLE+FRACTION in 2^-32"},
       {whole + "1 play\n",
        "t:10:3: error: 'midi', 'numbered', 'tempo', 'position', 'bank', 'notes_off', 'target', "
-       "'modulation' or "
-       "'expression' must be here "
-       "after a time"},
+       "'modulation', 'expression' or 'choke' must be here after a time"},
       {whole + "1 midi 90 3c\n", "t:10:13: error: a byte in two hexadecimal digits must be here"},
       {whole + "1 midi 90  3c 40\n",
        "t:10:11: error: a byte in two hexadecimal digits must be here"},

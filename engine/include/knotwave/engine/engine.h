@@ -30,9 +30,9 @@ struct MissingPatch {
   bool operator==(const MissingPatch&) const = default;
 };
 
-/// A note that the player numbered (Event::note) and that is heard no more.
+/// A note that is heard no more and will not be again.
 struct EndedNote {
-  std::int32_t note = 0;
+  std::int32_t note = Event::kNoNote;  ///< Event::note of its note on
   int channel = 0, key = 0;
 };
 
@@ -83,7 +83,10 @@ class Engine {
   /// The next sample to be rendered. [audio]
   std::int64_t now() const KNOTWAVE_RT;
   const EngineCounters& counters() const KNOTWAVE_RT;
-  /// Those that ended in the last process(), for hosts that follow voices. [audio]
+  /// Those that ended in the last process(), for hosts that follow voices. [audio] Every note on is
+  /// told once: of a monophonic patch not before its key and pedals let go too, of a bank without a
+  /// patch for it at once. Without order; room for kMostNotesAtOnce note ons in one process().
+  static constexpr int kMostNotesAtOnce = 4096;
   std::span<const EndedNote> ended_notes() const KNOTWAVE_RT;
   /// The note begun last of those that sound, for those who show it; patch null: none does. [audio]
   struct Newest {

@@ -20,7 +20,8 @@ struct Event {
     all_notes_off,
     set_target,
     position,
-    set_note
+    set_note,
+    choke
   };
   /// The slot that means every slot of the channel.
   static constexpr int kEverySlot = 0xFFFF;
@@ -38,11 +39,12 @@ struct Event {
   /// system reset leaves it; kEverySlot takes back only these numbers.
   bool every_channel = false;
   /// A number the player gave a note, 0 or more. Kind::midi: of this note on; this note off ends
-  /// that note, wherever others of its key are. Kind::set_note: only that note.
+  /// that note, wherever others of its key are. Kind::set_note and Kind::choke: only that note.
   std::int32_t note = kNoNote;
-  /// Kind::set_note without `note`: the notes that sound of midi.channel() (or every_channel) on
-  /// the key midi.bytes[1] (or kEveryKey). What a number is added to in them is `slot`; a note that
-  /// begins at the same sample has it from its beginning, others glide.
+  /// Kind::set_note and Kind::choke without `note`: the notes of midi.channel() (or every_channel)
+  /// on the key midi.bytes[1] (or kEveryKey). Choked ones fade out in 5 ms, whatever key or pedal
+  /// holds them; a key that is down does not sound again. What a number is added to is `slot`; a
+  /// note that begins at the same sample has it from its beginning, others glide.
   /// Two numbers may be added to one slot of a note: of modulation and of expression.
   bool is_expression = false;
   /// Kind::position: where the song is, in MIDI clocks of 1/24 quarter note since its start.

@@ -20,9 +20,9 @@ struct JournalRecord {
   Event::Kind kind = Event::Kind::midi;
   std::uint8_t bytes[3] = {0, 0, 0};
   std::uint8_t sysex_size = 0;
-  bool every_channel = false;          ///< set_target, set_note
+  bool every_channel = false;          ///< set_target, set_note, choke
   bool is_expression = false;          ///< set_note
-  std::int32_t note = Event::kNoNote;  ///< midi, set_note
+  std::int32_t note = Event::kNoNote;  ///< midi, set_note, choke
   std::uint32_t index = 0;  ///< set_target, set_note: the slot; install_bank: of Journal::banks
   double number = 0;        ///< tempo, set_target, set_note, position
   std::array<std::uint8_t, 24> sysex{};

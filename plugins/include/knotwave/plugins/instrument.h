@@ -26,7 +26,7 @@ struct InstrumentConfig {
 class Instrument final : public Plugin {
  public:
   /// Room for a block's events. Where more come, the block is rendered in parts; of those at one
-  /// sample the rest is played a sample later.
+  /// sample the rest is played a sample later, of those at the last sample with the next block.
   static constexpr std::size_t kEventsAtOnce = 2048;
 
   static const ParameterTable& table();  ///< [any] made at the first call
@@ -71,6 +71,7 @@ class Instrument final : public Plugin {
   std::span<const engine::EndedNote> ended_notes() const KNOTWAVE_RT override {
     return std::span(ended_).first(ended_count_);
   }
+  void forget_ended_notes() KNOTWAVE_RT override { ended_count_ = 0; }
   /// A tempo that is in force costs nothing. The song's position is told to the engine where the
   /// song begins to play and where it jumps (by more than 1/1000 of a quarter note), at the next
   /// 1/24 of a quarter note, to a 2^-32 of a sample.
@@ -101,7 +102,7 @@ class Instrument final : public Plugin {
   std::vector<engine::Event> events_;  ///< [kEventsAtOnce]
   std::size_t event_count_ = 0;
   std::array<double, ParameterValues::kMost> modulation_{};  ///< of every note
-  std::vector<engine::EndedNote> ended_;                     ///< [kEventsAtOnce]
+  std::vector<engine::EndedNote> ended_;
   std::size_t ended_count_ = 0;
   std::span<float> left_, right_;
   std::size_t done_ = 0;  ///< samples of this block that are rendered

@@ -108,8 +108,10 @@ class Plugin {
   virtual void render() KNOTWAVE_RT = 0;
   /// MIDI of the block, in order of time, from render() to the next begin().
   virtual std::span<const base::MidiEvent> midi_out() const KNOTWAVE_RT { return {}; }
-  /// Notes of the block that the host numbered and that are heard no more.
+  /// Notes that are heard no more, since begin() or forget_ended_notes(). Where more than a block's
+  /// events come, they are to be asked for after each event: the block is rendered in parts then.
   virtual std::span<const engine::EndedNote> ended_notes() const KNOTWAVE_RT { return {}; }
+  virtual void forget_ended_notes() KNOTWAVE_RT {}
   /// Every note and every tail ends at once. Parameters and controllers stay.
   virtual void reset() KNOTWAVE_RT = 0;
   /// Silent until something comes in.

@@ -97,6 +97,7 @@ Result<void> EnvelopeGenerator::State::set_up_lanes() {
     spec.number = output.number;
     spec.bits = output.bits;
     spec.first_step = -1;
+    spec.rest_step = rest_step(output);
     const auto port = static_cast<std::size_t>(lane.port);
     const auto added = ports[port]->add_lane(spec);
     if (!added) return added.error();
@@ -119,6 +120,7 @@ Result<void> EnvelopeGenerator::State::set_up_players() {
     (*player)->handle(tempo);
     players.push_back(std::move(*player));
   }
+  posted.assign(players.size(), 0);
   newest_note.assign(players.size(), 0);
   played.assign(players.size(), 0);
   return {};

@@ -111,13 +111,12 @@ void EnvelopeGenerator::State::play_block(std::size_t n, GeneratorSink& sink) KN
   for (std::size_t i = 0; i < players.size(); ++i) {
     EnvelopePlayer& player = *players[i];
     player.render(n);
-    if (!is_resting) post_player_messages(static_cast<int>(i));
     if (predict != 0) player.predict(predict);
   }
   fill_rows(n);
   send_osc(n, sink);
+  render_ports_and_messages(n, sink);
   send_volts(sink);
-  render_ports(n, sink);
   now += static_cast<std::int64_t>(n);
   for (LaneRow& row : rows) {
     std::copy_n(row.values.begin() + static_cast<std::ptrdiff_t>(n), lead, row.values.begin());
@@ -198,12 +197,13 @@ void EnvelopeGenerator::State::fill_row(std::size_t lane, std::size_t n) KNOTWAV
   LaneRow& row = rows[lane];
   const GeneratorRoute& route = table.routes[static_cast<std::size_t>(source_route(way))];
   const EnvelopePlayer& player = *players[static_cast<std::size_t>(route.patch)];
-  const int voice = way.voice < 0 ? player.newest_voice() : way.voice;
+  // One that has not begun is at rest, but what is predicted of it may begin.
+  const int voice = way.voice < 0 ? std::max(player.newest_voice(), 0) : way.voice;
   const double offset = step_offset(route.spec.kind);
   const auto to = row.values.begin() + static_cast<std::ptrdiff_t>(lead);
   const std::size_t count = n + predict;
   const double before = lead == 0 ? row.values[0] : *(to - 1);
-  if (is_resting || voice < 0) {
+  if (is_resting) {
     std::fill_n(to, count, route.spec.rest + offset);
   } else {
     const auto values = player.values(voice, route.output);
@@ -262,23 +262,50 @@ void EnvelopeGenerator::State::post_thru(const MidiEvent& event) KNOTWAVE_RT {
 }
 
 void EnvelopeGenerator::State::post_player_messages(int patch) KNOTWAVE_RT {
+  for (const PlayerMessage& message : players[static_cast<std::size_t>(patch)]->take_messages()) {
+    post_player_message(patch, message);
+  }
+}
+
+void EnvelopeGenerator::State::post_player_message(int patch,
+                                                   const PlayerMessage& message) KNOTWAVE_RT {
   const auto p = static_cast<std::size_t>(patch);
-  const bool is_thru = patches[p]->spec().notes == NoteOutput::thru;
-  for (const PlayerMessage& message : players[p]->take_messages()) {
-    int port = notes_ports[p];
-    if (message.kind == PlayerMessage::Kind::place_gate) {
-      volts.hear(p, message);
-      continue;
+  int port = notes_ports[p];
+  if (message.kind == PlayerMessage::Kind::place_gate) {
+    volts.hear(p, message);
+    return;
+  }
+  if (message.kind == PlayerMessage::Kind::place_note) {
+    port = place_ports[p][static_cast<std::size_t>(message.place_event)];
+  }
+  const bool passes =
+      patches[p]->spec().notes == NoteOutput::thru && message.kind == PlayerMessage::Kind::thru;
+  MidiEvent midi = message.midi;
+  // Without a lead, cables have gone as far as the players: what came between the last two
+  // samples goes out with the next, however blocks fall.
+  if (lead == 0) midi.time = {base::first_sample(midi.time), 0};
+  ports[static_cast<std::size_t>(port)]->post(midi, priority_of(midi), passes);
+}
+
+/// What players told in this block is posted where the cables have come as far, so that as much
+/// waits then, and as much is left out of a full cable, however blocks fall.
+void EnvelopeGenerator::State::render_ports_and_messages(std::size_t n,
+                                                         GeneratorSink& sink) KNOTWAVE_RT {
+  constexpr std::size_t kNone = ~std::size_t{0};
+  std::fill(posted.begin(), posted.end(), 0);
+  for (std::size_t done = 0;;) {
+    std::size_t next = kNone, at = n;
+    for (std::size_t i = 0; i < players.size() && !is_resting; ++i) {
+      const auto messages = players[i]->take_messages();
+      if (posted[i] == messages.size()) continue;
+      const std::int64_t sample = base::first_sample(messages[posted[i]].midi.time) - now;
+      const auto place = static_cast<std::size_t>(std::max<std::int64_t>(sample, 0));
+      if (next == kNone || place < at) at = std::min(place, n), next = i;
     }
-    if (message.kind == PlayerMessage::Kind::place_note) {
-      port = place_ports[p][static_cast<std::size_t>(message.place_event)];
-    }
-    const bool passes = is_thru && message.kind == PlayerMessage::Kind::thru;
-    MidiEvent midi = message.midi;
-    // Without a lead, cables have gone as far as the players: what came between the last two
-    // samples goes out with the next, however blocks fall.
-    if (lead == 0) midi.time = {base::first_sample(midi.time), 0};
-    ports[static_cast<std::size_t>(port)]->post(midi, priority_of(midi), passes);
+    if (at > done) render_ports(done, at - done, sink);
+    done = std::max(done, at);
+    if (next == kNone) return;
+    post_player_message(static_cast<int>(next), players[next]->take_messages()[posted[next]++]);
   }
 }
 
@@ -287,13 +314,15 @@ bool EnvelopeGenerator::State::holds(const LaneRow& row) const KNOTWAVE_RT {
   return row.still > static_cast<std::int64_t>(2 * kBlock + lead);
 }
 
-void EnvelopeGenerator::State::render_ports(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT {
-  const std::int64_t begin = now - static_cast<std::int64_t>(lead);
+void EnvelopeGenerator::State::render_ports(std::size_t from, std::size_t n,
+                                            GeneratorSink& sink) KNOTWAVE_RT {
+  const std::int64_t of_rows = now - static_cast<std::int64_t>(lead);
+  const std::int64_t begin = of_rows + static_cast<std::int64_t>(from);
   const std::int64_t first = std::max<std::int64_t>(begin, 0);
   const std::int64_t end = begin + static_cast<std::int64_t>(n);
   if (first >= end) return;
   const auto count = static_cast<std::size_t>(end - first);
-  const auto offset = static_cast<std::size_t>(first - begin);
+  const auto offset = static_cast<std::size_t>(first - of_rows);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const GeneratorLane& lane = table.lanes[i];
     const auto port = static_cast<std::size_t>(lane.port);

@@ -70,7 +70,9 @@ struct EnvelopeGenerator::State {
   // To the cables.
   void post_player_messages(int patch) KNOTWAVE_RT;
   void post_thru(const base::MidiEvent& event) KNOTWAVE_RT;
-  void render_ports(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT;
+  void post_player_message(int patch, const PlayerMessage& message) KNOTWAVE_RT;
+  void render_ports_and_messages(std::size_t n, GeneratorSink& sink) KNOTWAVE_RT;
+  void render_ports(std::size_t from, std::size_t n, GeneratorSink& sink) KNOTWAVE_RT;
   void take_snapshot() KNOTWAVE_RT;
   // Rest.
   void go_to_rest() KNOTWAVE_RT;
@@ -103,6 +105,7 @@ struct EnvelopeGenerator::State {
   std::int64_t lost = 0;
 
   MidiClock clock;
+  std::vector<std::size_t> posted;         ///< of each patch's messages of this block
   std::vector<std::uint64_t> newest_note;  ///< of each patch
   std::vector<std::uint64_t> played;       ///< counts up with each patch's new notes
   std::uint64_t notes_played = 0;

@@ -18,9 +18,10 @@ int nearest_step(double v) { return static_cast<int>(std::floor(v + 0.5)); }
 
 }  // namespace
 
-OutputLane::OutputLane(const LaneSpec& spec)
+OutputLane::OutputLane(const LaneSpec& spec, const Cable& cable)
     : spec_(spec), top_(spec.bits == 14 ? 16383 : 127), sent_(spec.first_step) {
   curve_.top = top_;
+  first_takes_ = cable.time_of_bytes(most_bytes());
 }
 
 bool OutputLane::has_halves() const KNOTWAVE_RT {
@@ -313,9 +314,14 @@ void OutputLane::note_extreme(Extreme& extreme, int step, int direction, Ticks t
   if (is_further) extreme = {step, kNever};
   if (is_held(step, direction, time, held_until)) {
     extreme.owed_since = kNever;
-  } else if (extreme.owed_since == kNever && sent_ >= 0) {
+  } else if (extreme.owed_since == kNever && is_owed(step, time)) {
     extreme.owed_since = time;
   }
+}
+
+/// Always, but for the rest from which a value starts before anybody could be told.
+bool OutputLane::is_owed(int step, Ticks time) const KNOTWAVE_RT {
+  return sent_ >= 0 || step != spec_.rest_step || time >= arrived_ + first_takes_;
 }
 
 /// The receiver hears of `step` or went beyond: it is there at `time`, or a message is on its way.

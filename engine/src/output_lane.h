@@ -36,7 +36,7 @@ using Selections = std::array<ParameterSelection, 16>;
 
 class OutputLane {
  public:
-  explicit OutputLane(const LaneSpec& spec);
+  OutputLane(const LaneSpec& spec, const Cable& cable);
 
   const LaneSpec& spec() const KNOTWAVE_RT { return spec_; }
   bool is_expression() const KNOTWAVE_RT;
@@ -87,6 +87,7 @@ class OutputLane {
     Extreme low, high;
   };
 
+  bool is_owed(int step, Ticks time) const KNOTWAVE_RT;
   bool is_held(int step, int direction, Ticks time, Ticks until) const KNOTWAVE_RT;
   bool is_nrpn() const KNOTWAVE_RT { return spec_.kind == OutputKind::nrpn; }
   bool has_halves() const KNOTWAVE_RT;
@@ -111,7 +112,8 @@ class OutputLane {
   int sent_ = 0;  ///< -1: nobody knows
   int sent_before_ = -1;
   int high_half_ = -1, low_half_ = -1;
-  Ticks arrived_ = 0;  ///< when what was sent last was there, as far as is known
+  Ticks first_takes_ = 0;  ///< the first message to come, at most
+  Ticks arrived_ = 0;      ///< when what was sent last was there, as far as is known
   bool is_on_its_way_ = false;
   Ticks not_before_ = 0;
   Ticks left_at_ = kNever;

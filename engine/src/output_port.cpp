@@ -340,6 +340,9 @@ Result<void> check_lane(const LaneSpec& lane) {
   if (lane.first_step < -1 || lane.first_step > top) {
     return lane_fault("first_step", lane.first_step, -1, top);
   }
+  if (lane.rest_step < -1 || lane.rest_step > top) {
+    return lane_fault("rest_step", lane.rest_step, -1, top);
+  }
   return {};
 }
 
@@ -356,7 +359,7 @@ Result<int> OutputPort::add_lane(const LaneSpec& spec) {
     return fail(ErrorCode::value_out_of_range,
                 "a port has " + std::to_string(kMostLanes) + " lanes at most");
   }
-  state_->lanes.emplace_back(lane);
+  state_->lanes.emplace_back(lane, state_->cable);
   state_->lane_bytes.push_back(0);
   const OutputLane& added = state_->lanes.back();
   const Ticks known =

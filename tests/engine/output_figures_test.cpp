@@ -106,7 +106,7 @@ struct Bound {
 };
 struct Row {
   double length_s;
-  Bound din, running;  ///< research/synths.md 6, and the goal of the generator
+  Bound din, running;  ///< the goals of the generator
 };
 constexpr Row kGoals[] = {{0.010, {41, 11}, {29, 7}},
                           {0.030, {15, 3.4}, {11, 2.3}},

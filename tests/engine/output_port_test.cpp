@@ -351,6 +351,55 @@ TEST(OutputPort, APeakShorterThanAMessageIsReachedAndLeft) {
   EXPECT_LE(wire.sent.size(), 3u);
 }
 
+/// 0, and from `begin_s` on for a millisecond 127.
+Motion pulse(double begin_s) {
+  return [=](double t, double) { return t >= begin_s && t < begin_s + 0.001 ? 127.0 : 0.0; };
+}
+
+std::vector<int> steps_sent(const Wire& wire, int number) {
+  std::vector<int> steps;
+  for (const Sent& sent : wire.sent) {
+    if (sent.event.bytes[1] == number) steps.push_back(sent.event.bytes[2]);
+  }
+  return steps;
+}
+
+TEST(OutputPort, APeakBeforeALanesFirstMessageIsReachedOnAFullCable) {
+  auto port = *OutputPort::create(din());
+  Wire wire(din());
+  std::vector<Motion> motions;
+  for (int i = 0; i < 20; ++i) {
+    LaneSpec lane = control(i);
+    lane.first_step = -1;
+    lane.rest_step = 0;
+    ASSERT_TRUE(port->add_lane(lane));
+    motions.push_back(pulse(0.004));  // the cable is busy until 0.013
+  }
+  play(*port, wire, motions, 0, 9600, kRate);
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<int> steps = steps_sent(wire, i);
+    EXPECT_EQ(std::ranges::max(steps), 127) << "controller " << i;
+    EXPECT_EQ(steps.back(), 0) << "controller " << i;
+  }
+}
+
+TEST(OutputPort, AValueThatStartsFromRestBeforeAMessageCouldComeIsNotSaidAtRest) {
+  for (const int rest : {0, 64}) {
+    auto port = *OutputPort::create(din());
+    Wire wire(din());
+    LaneSpec lane = control(1);
+    lane.first_step = -1;
+    lane.rest_step = rest;
+    ASSERT_TRUE(port->add_lane(lane));
+    play(*port, wire, {[](double t, double) { return std::min(t * 20000, 127.0); }}, 0, 9600,
+         kRate);
+    const std::vector<int> steps = steps_sent(wire, 1);
+    ASSERT_FALSE(steps.empty());
+    EXPECT_EQ(steps.front() == 0, rest != 0) << "rest is " << rest;
+    EXPECT_EQ(steps.back(), 127);
+  }
+}
+
 TEST(OutputPort, LanesThatMoveAlikeAreServedAlike) {
   const OutputPortConfig config = din(false);
   auto port = *OutputPort::create(config);

@@ -131,9 +131,9 @@ void VoltageOutput::render(std::int64_t first, std::span<const double> volts,
   has_begun_ = true;
   for (std::size_t i = 0; i < volts.size(); ++i) {
     const double wanted = volts[i] == volts[i] ? volts[i] : 0;
-    const double volt = gain(first + static_cast<std::int64_t>(i)) * wanted;
-    double sample = (volt - channel_.offset_v) / channel_.volts_full_scale;
-    if (!is_direct_) sample = protect(volt / channel_.volts_full_scale);
+    const double ramp = gain(first + static_cast<std::int64_t>(i));
+    double sample = ramp * (wanted - channel_.offset_v) / channel_.volts_full_scale;
+    if (!is_direct_) sample = protect(ramp * wanted / channel_.volts_full_scale);
     if (sample > 1 || sample < -1) ++clamped_;
     out[i] = static_cast<float>(std::clamp(sample, -1.0, 1.0));
   }

@@ -47,23 +47,23 @@ TEST(VoltageOutput, ADirectCurrentIsWithin2ToTheMinus24OfTheIdeal) {
     const long double scale = channel == 2 ? -6.75L : 10.0L, offset = channel == 2 ? 0.0125L : 0;
     for (std::size_t i = 0; i < out.size(); ++i) {
       const long double t = std::min(static_cast<long double>(i) / 480, 1.0L);
-      const long double ideal = (volts[i] * (3 * t * t - 2 * t * t * t) - offset) / scale;
+      const long double ideal = (3 * t * t - 2 * t * t * t) * (volts[i] - offset) / scale;
       const long double kept = std::clamp(ideal, -1.0L, 1.0L);
       ASSERT_LE(std::abs(out[i] - kept), 0x1p-24L) << "channel " << channel << " sample " << i;
     }
   }
 }
 
-TEST(VoltageOutput, TheRampOutEndsAtNoVoltsExactly) {
+TEST(VoltageOutput, TheRampOutEndsAtTheSampleOfASilentDeviceExactly) {
   VoltageConfig config = config_of(true);
   config.channels = {{8, 0.5}};
   const std::vector<double> volts(4800, 4.0);
   const auto out = render(*VoltageOutput::create(config, 1), volts, 64, 2400);
-  EXPECT_EQ(out[0], -0.0625f);
+  EXPECT_EQ(out[0], 0.0f);
   EXPECT_EQ(out[2400], 0.4375f);
-  EXPECT_EQ(out[2400 + 240], 0.1875f) << "half way down at half the time";
-  EXPECT_EQ(out[2400 + 480], -0.0625f);
-  EXPECT_EQ(out.back(), -0.0625f);
+  EXPECT_EQ(out[2400 + 240], 0.21875f) << "half way down at half the time";
+  EXPECT_EQ(out[2400 + 480], 0.0f);
+  EXPECT_EQ(out.back(), 0.0f);
   VoltageOutput output = *VoltageOutput::create(config, 1);
   output.ramp_out(100);
   EXPECT_FALSE(output.is_silent(579));

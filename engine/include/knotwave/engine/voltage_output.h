@@ -20,7 +20,7 @@ struct VoltageChannel {
 
 struct VoltageConfig {
   bool direct_current = false;  ///< --cv; else a high-pass of kProtectHz keeps loudspeakers safe
-  double ramp_s = 0.5;          ///< in and out: from 0 V, along the S-curve 3 t^2 - 2 t^3
+  double ramp_s = 0.5;          ///< in and out: from a sample of 0, along the S-curve 3 t^2 - 2 t^3
   double rate_hz = 48000;
   std::vector<VoltageChannel> channels;  ///< missing ones are as the default
 };
@@ -44,9 +44,9 @@ class VoltageOutput {
   /// 0 V. The ramp in begins with the first sample; the high-pass comes after the ramps. With
   /// direct current a sample is within 2^-25 of the ideal one. [audio]
   void render(std::int64_t first, std::span<const double> volts, std::span<float> out) KNOTWAVE_RT;
-  /// Begins the way to 0 V at `sample`. [audio]
+  /// Begins the way to a sample of 0, as of a device that is closed, at `sample`. [audio]
   void ramp_out(std::int64_t sample) KNOTWAVE_RT;
-  bool is_silent(std::int64_t sample) const KNOTWAVE_RT;  ///< it has come to 0 V
+  bool is_silent(std::int64_t sample) const KNOTWAVE_RT;  ///< it has come there
   /// The next sample is the first again: a device that was lost is back. [control, not rendering]
   void begin_again();
   std::int64_t clamped() const KNOTWAVE_RT { return clamped_; }

@@ -16,6 +16,7 @@ namespace {
 constexpr std::int64_t kStepNs = 500'000;
 constexpr std::int64_t kStillStepNs = 10'000'000;  // what is caught up when a note comes
 constexpr std::int64_t kShowNs = 250'000'000;
+constexpr std::int64_t kStallNs = 200'000'000;
 constexpr std::size_t kMostKept = 1 << 20;  // 5 minutes of a MIDI cable
 constexpr int kPriority = 15;               // below the sender's
 
@@ -50,7 +51,8 @@ Planner::Planner(const Config& config, engine::EnvelopeGenerator& generator, io:
       listener_(listener),
       names_(std::move(names)),
       kept_(kMostKept),
-      begin_ns_(io::steady_clock_ns()) {}
+      begin_ns_(io::steady_clock_ns()),
+      stepped_ns_(begin_ns_) {}
 
 Planner::~Planner() {
   must_end_ = true;
@@ -112,8 +114,11 @@ void Planner::run() {
   }
 }
 
-/// All that was heard until now, of all inputs, in order; then the time that passed.
+/// All that was heard until now, of all inputs, in order; then the time that passed. While the
+/// process was stopped none passed: what it would have sent would all go at once.
 void Planner::step(std::int64_t now_ns) {
+  const std::int64_t passed_ns = now_ns - std::exchange(stepped_ns_, now_ns);
+  if (passed_ns > kStallNs) begin_ns_ += passed_ns;
   take_inputs(now_ns);
   const std::uint32_t again = again_ports_.exchange(0);
   for (int port = 0; again >> port != 0; ++port) {

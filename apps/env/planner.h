@@ -103,7 +103,8 @@ class Planner final : public io::MidiListener, private engine::GeneratorSink {
   std::size_t kept_end_ = 0;
   std::atomic<std::int64_t> dropped_in_{0};
   std::atomic<std::uint32_t> again_ports_{0};  ///< bit p: port p
-  std::int64_t begin_ns_ = 0;
+  std::int64_t begin_ns_ = 0;                  ///< of the virtual clock
+  std::int64_t stepped_ns_ = 0;                ///< the last step
   std::array<io::OscNumber, 64> bundle_;
   std::size_t bundled_ = 0;
   base::SampleTime bundle_time_;

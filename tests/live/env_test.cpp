@@ -243,6 +243,46 @@ TEST_F(EnvOnJack, AReceiverThatComesBackIsToldTheValueAgain) {
   EXPECT_THAT(env.log(), HasSubstr("is back"));
 }
 
+/// Fills its cable for ever.
+constexpr const char* kEndless = R"(
+format = 1
+kind = "envelope"
+name = "wave"
+mode = "mono"
+[trigger]
+from = "loop"
+[ports.synth]
+wire = "din"
+[lfos.wave]
+curve = "sine"
+rate_hz = 10
+[[maps]]
+from = "wave"
+to = "free.x"
+[[outputs]]
+from = "free.x"
+to = "bend"
+port = "synth"
+channel = 3
+)";
+
+TEST_F(EnvOnJack, TheTimeInWhichItStoodStillIsNotMadeUpFor) {
+  const double most_in_a_second = engine::kDinBytesPerSecond / 2;  // messages, with running status
+  JackReceiver board("board");
+  EnvProcess env(kEndless, {"--midi-api", "jack", "--midi-out", "board"});
+  ASSERT_LT(seconds_until([&] { return board.count() > 500; }, 15), 15) << env.log();
+  env.program().signal(SIGSTOP);
+  std::this_thread::sleep_for(3s);
+  const std::size_t before = board.count();
+  const auto begin = std::chrono::steady_clock::now();
+  env.program().signal(SIGCONT);
+  EXPECT_LT(seconds_until([&] { return board.count() > before + 50; }, 15), 15) << env.log();
+  std::this_thread::sleep_for(200ms);
+  const std::size_t sent = board.count() - before;
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+  EXPECT_LE(static_cast<double>(sent), (passed.count() + 0.2) * most_in_a_second);
+}
+
 TEST_F(EnvOnJack, TwoOfThemDoNotListenToEachOtherUnlessToldTo) {
   const auto one = playing({"--midi-api", "jack"}), two = playing({"--midi-api", "jack"});
   EXPECT_THAT(two->log(), HasSubstr("is left out"));

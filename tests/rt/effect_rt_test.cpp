@@ -2,12 +2,8 @@
 // Every effect inside the gate: presets and curve files loaded while it plays, a storm of
 // parameters and of the host's transport, NaN in the sound, and resets.
 #include <array>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -15,6 +11,7 @@
 #include "knotwave/plugins/effect.h"
 #include "knotwave/plugins/plugin_list.h"
 
+#include "preset_control.h"
 #include "rt_gate.h"
 #include "support/seed.h"
 
@@ -23,9 +20,7 @@ namespace {
 
 constexpr std::size_t kBlock = 96;
 constexpr std::size_t kChannels = plugins::Block::kMostChannels;
-constexpr int kBlocksOfALoad = 24;
 constexpr int kLoads = 40;
-constexpr int kMostBlocks = 200'000;
 constexpr const char* kCurve =
     "format = 1\nkind = \"curve\"\n[curves.any]\ndegree = 1\npoints = [0, 0.5, 1]\n";
 
@@ -58,6 +53,7 @@ class Storm {
     ++blocks_;
   }
   bool is_finite() const { return is_finite_; }
+  bool has_enough() const { return true; }
 
  private:
   std::uint64_t bits() { return random_.bits(draw_++); }
@@ -72,55 +68,25 @@ class Storm {
   bool is_finite_ = true;
 };
 
-/// The control thread: loads one thing after the other while blocks are played.
-class Loader {
- public:
-  explicit Loader(plugins::Plugin& plugin) : thread_([this, &plugin] { run(plugin); }) {}
-  ~Loader() { thread_.join(); }
-
-  void play(Storm& storm) {
-    while (!is_done_.load() && blocks_.load() < kMostBlocks) {
-      storm.block();
-      blocks_.fetch_add(1);
-    }
-  }
-
- private:
-  void run(plugins::Plugin& plugin) {
-    for (std::size_t load = 0; load < kLoads; ++load) {
-      const int begin = blocks_.load();
-      const auto loaded = load % 2 == 0 ? plugin.load_state(kCurve)
-                                        : plugin.load_preset(load % plugin.info().presets.size());
-      EXPECT_TRUE(loaded);
-      while (blocks_.load() < begin + kBlocksOfALoad && blocks_.load() < kMostBlocks) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      }
-      plugin.collect();
-    }
-    is_done_ = true;
-  }
-
-  std::atomic<int> blocks_{0};
-  std::atomic<bool> is_done_{false};
-  std::thread thread_;
-};
-
 void every_effect_in_a_storm(Gate gate) {
   for (const plugins::PluginInfo* info : plugins::all_plugins()) {
     const auto plugin = info->create();
     if (dynamic_cast<plugins::Effect*>(plugin.get()) == nullptr) continue;
     ASSERT_TRUE(plugin->activate(48000));
     Storm storm(*plugin);
-    std::unique_ptr<Loader> loader;
-    const GateReport report = run_in_gate(
-        gate, [&] { loader->play(storm); },
-        [&] {
-          Loader(*plugin).play(storm);
-          loader = std::make_unique<Loader>(*plugin);
-        });
-    loader.reset();
-    EXPECT_EQ(report.findings(), "") << info->key;
+    const StormReport report = storm_in_gate(
+        gate, storm,
+        {.count = kLoads,
+         .load =
+             [&](int load) {
+               const auto preset = static_cast<std::size_t>(load) % info->presets.size();
+               EXPECT_TRUE(load % 2 == 0 ? plugin->load_state(kCurve)
+                                         : plugin->load_preset(preset));
+             },
+         .collect = [&] { plugin->collect(); }});
+    EXPECT_EQ(report.gate.findings(), "") << info->key;
     EXPECT_TRUE(storm.is_finite()) << info->key;
+    EXPECT_LT(report.blocks, kMostBlocks) << info->key;
   }
 }
 

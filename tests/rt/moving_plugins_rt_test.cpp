@@ -3,18 +3,15 @@
 // of notes, of parameters, of sound and of the host's transport, and resets.
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <chrono>
 #include <cmath>
-#include <memory>
 #include <string>
-#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "knotwave/base/random.h"
 #include "knotwave/plugins/plugin_list.h"
 
+#include "preset_control.h"
 #include "rt_gate.h"
 #include "support/seed.h"
 
@@ -25,8 +22,7 @@ using plugins::Plugin;
 using plugins::PluginInfo;
 
 constexpr std::size_t kBlock = 64;
-constexpr int kBlocksOfAPreset = 24;
-constexpr int kMostBlocks = 200'000;
+constexpr std::size_t kSentAtLeast = 500;
 
 /// The audio thread of a host.
 class Storm {
@@ -56,7 +52,7 @@ class Storm {
       if (bits() % 2 == 0) {
         plugin_.add_parameter(bits() % parameters_, random_.bipolar(draw_++) * 20, sample);
       } else {
-        plugin_.add(message(sample));
+        plugin_.add(random_message(bits(), sample));
       }
     }
     plugin_.render();
@@ -68,22 +64,11 @@ class Storm {
     ++blocks_;
   }
   float loudest() const { return loudest_; }
-  std::size_t sent() const { return sent_; }
+  bool has_enough() const { return !plugin_.info().gives_midi || sent_ >= kSentAtLeast; }
 
  private:
   static constexpr std::size_t kChannels = plugins::Block::kMostChannels;
   std::uint64_t bits() { return random_.bits(draw_++); }
-  engine::Event message(std::int64_t sample) {
-    constexpr std::array<std::uint8_t, 8> kStatus = {0x90, 0x90, 0x90, 0x80,
-                                                     0xB0, 0xC0, 0xD0, 0xE0};
-    const std::uint64_t draw = bits();
-    engine::Event event;
-    event.midi.time.sample = sample;
-    event.midi.bytes[0] = static_cast<std::uint8_t>(kStatus[draw & 7] | (draw >> 3 & 15));
-    event.midi.bytes[1] = static_cast<std::uint8_t>(draw >> 8 & 127);
-    event.midi.bytes[2] = static_cast<std::uint8_t>(draw >> 16 & 127);
-    return event;
-  }
 
   Plugin& plugin_;
   std::size_t parameters_, outs_ = 0;
@@ -98,59 +83,26 @@ class Storm {
   std::size_t sent_ = 0;
 };
 
-/// The control thread: loads one preset after the other while blocks are played.
-class Control {
- public:
-  explicit Control(Plugin& plugin) : thread_([this, &plugin] { run(plugin); }) {}
-  ~Control() { thread_.join(); }
-
-  void play(Storm& storm) {
-    while (!is_done_.load() && blocks_.load() < kMostBlocks) {
-      storm.block();
-      blocks_.fetch_add(1);
-    }
-  }
-  int blocks() const { return blocks_.load(); }
-
- private:
-  void run(Plugin& plugin) {
-    for (std::size_t preset = 0; preset < plugin.info().presets.size(); ++preset) {
-      const int begin = blocks_.load();
-      EXPECT_TRUE(plugin.load_preset(preset));
-      plugin.set_parameter(preset % plugin.info().parameters->size(), 0.5);
-      while (blocks_.load() < begin + kBlocksOfAPreset && blocks_.load() < kMostBlocks) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      }
-      plugin.collect();
-    }
-    is_done_ = true;
-  }
-
-  std::atomic<int> blocks_{0};
-  std::atomic<bool> is_done_{false};
-  std::thread thread_;
-};
-
 void every_preset_in_a_storm(const PluginInfo& info, Gate gate) {
   const auto plugin = info.create();
   ASSERT_TRUE(plugin->activate(48000));
   Storm storm(*plugin);
-  std::unique_ptr<Control> control;
-  const GateReport report = run_in_gate(
-      gate, [&] { control->play(storm); },
-      [&] {
-        Control(*plugin).play(storm);
-        control = std::make_unique<Control>(*plugin);
-      });
-  const int blocks = control->blocks();
-  control.reset();
-  EXPECT_EQ(report.findings(), "");
+  const auto presets = static_cast<int>(info.presets.size());
+  const StormReport report =
+      storm_in_gate(gate, storm,
+                    {.count = presets,
+                     .load =
+                         [&](int preset) {
+                           const auto i = static_cast<std::size_t>(preset);
+                           EXPECT_TRUE(plugin->load_preset(i));
+                           plugin->set_parameter(i % info.parameters->size(), 0.5);
+                         },
+                     .collect = [&] { plugin->collect(); }});
+  EXPECT_EQ(report.gate.findings(), "");
   EXPECT_GT(storm.loudest(), 0.01F);
-  if (info.gives_midi) {
-    EXPECT_GT(storm.sent(), 500u);
-  }
-  EXPECT_GE(blocks, kBlocksOfAPreset * static_cast<int>(info.presets.size()));
-  EXPECT_LT(blocks, kMostBlocks);
+  EXPECT_TRUE(storm.has_enough());
+  EXPECT_GE(report.blocks, kBlocksOfALoad * presets);
+  EXPECT_LT(report.blocks, kMostBlocks);
 }
 
 class MovingPluginInTheGate : public testing::TestWithParam<Gate> {};

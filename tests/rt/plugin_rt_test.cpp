@@ -2,10 +2,6 @@
 // The instrument of the plugins inside the gate: every preset loaded while it plays, a storm of
 // notes, of parameters and of the host's transport, and resets.
 #include <array>
-#include <atomic>
-#include <chrono>
-#include <memory>
-#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +10,7 @@
 #include "knotwave/plugins/instrument.h"
 #include "knotwave/plugins/parameters.h"
 
+#include "preset_control.h"
 #include "rt_gate.h"
 #include "support/seed.h"
 
@@ -23,8 +20,6 @@ namespace {
 using plugins::Instrument;
 
 constexpr std::size_t kBlock = 64;
-constexpr int kBlocksOfAPreset = 24;
-constexpr int kMostBlocks = 200'000;
 
 /// The audio thread of a host.
 class HostStorm {
@@ -58,19 +53,14 @@ class HostStorm {
     ++blocks_;
   }
   float loudest() const { return loudest_; }
+  bool has_enough() const { return true; }
 
  private:
   std::uint64_t bits() { return random_.bits(draw_++); }
   engine::Event message(std::int64_t sample) {
-    constexpr std::array<std::uint8_t, 8> kStatus = {0x90, 0x90, 0x90, 0x80,
-                                                     0xB0, 0xC0, 0xD0, 0xE0};
     const std::uint64_t draw = bits();
-    engine::Event event;
-    event.midi.time.sample = sample;
+    engine::Event event = random_message(draw, sample);
     event.note = static_cast<std::int32_t>(draw >> 40 & 31) - 12;
-    event.midi.bytes[0] = static_cast<std::uint8_t>(kStatus[draw & 7] | (draw >> 3 & 15));
-    event.midi.bytes[1] = static_cast<std::uint8_t>(draw >> 8 & 127);
-    event.midi.bytes[2] = static_cast<std::uint8_t>(draw >> 16 & 127);
     return event;
   }
 
@@ -82,56 +72,25 @@ class HostStorm {
   float loudest_ = 0;
 };
 
-/// The control thread: loads one preset after the other while blocks are played.
-class Control {
- public:
-  explicit Control(Instrument& instrument) : thread_([this, &instrument] { run(instrument); }) {}
-  ~Control() { thread_.join(); }
-
-  void play(HostStorm& storm) {
-    while (!is_done_.load() && blocks_.load() < kMostBlocks) {
-      storm.block();
-      blocks_.fetch_add(1);
-    }
-  }
-  int blocks() const { return blocks_.load(); }
-
- private:
-  void run(Instrument& instrument) {
-    for (std::size_t preset = 0; preset < plugins::factory_presets().size(); ++preset) {
-      const int begin = blocks_.load();
-      EXPECT_TRUE(instrument.load_preset(preset));
-      instrument.set_parameter(preset % plugins::Instrument::table().size(), 0.5);
-      while (blocks_.load() < begin + kBlocksOfAPreset && blocks_.load() < kMostBlocks) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      }
-      instrument.collect();
-    }
-    is_done_ = true;
-  }
-
-  std::atomic<int> blocks_{0};
-  std::atomic<bool> is_done_{false};
-  std::thread thread_;
-};
-
 void every_preset_in_a_storm(Gate gate) {
   Instrument instrument;
   ASSERT_TRUE(instrument.activate(48000));
   HostStorm storm(instrument);
-  std::unique_ptr<Control> control;
-  const GateReport report = run_in_gate(
-      gate, [&] { control->play(storm); },
-      [&] {
-        Control(instrument).play(storm);
-        control = std::make_unique<Control>(instrument);
-      });
-  const int blocks = control->blocks();
-  control.reset();
-  EXPECT_EQ(report.findings(), "");
+  const auto presets = static_cast<int>(plugins::factory_presets().size());
+  const StormReport report =
+      storm_in_gate(gate, storm,
+                    {.count = presets,
+                     .load =
+                         [&](int preset) {
+                           const auto i = static_cast<std::size_t>(preset);
+                           EXPECT_TRUE(instrument.load_preset(i));
+                           instrument.set_parameter(i % Instrument::table().size(), 0.5);
+                         },
+                     .collect = [&] { instrument.collect(); }});
+  EXPECT_EQ(report.gate.findings(), "");
   EXPECT_GT(storm.loudest(), 0.01F);
-  EXPECT_GE(blocks, kBlocksOfAPreset * static_cast<int>(plugins::factory_presets().size()));
-  EXPECT_LT(blocks, kMostBlocks);
+  EXPECT_GE(report.blocks, kBlocksOfALoad * presets);
+  EXPECT_LT(report.blocks, kMostBlocks);
 }
 
 TEST(PluginInTheGate, PlaysEveryPresetInAStormUnderTheSanitizer) {

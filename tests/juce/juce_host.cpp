@@ -9,7 +9,7 @@
 //   parameters                  name, unit, value (0 to 1) and text of each
 //   set NAME VALUE              as a knob does
 //   text NAME VALUE, value NAME TEXT
-//   programs, program NUMBER
+//   programs, program NAME
 //   midi SAMPLE BYTE BYTE BYTE, point SAMPLE NAME VALUE    of the next play
 //   song BPM QUARTERS 0|1       the host's, from the next block on
 //   play FRAMES BLOCK IN OUT    files of floats, one channel after the other; IN may be -; OUT.midi
@@ -184,7 +184,11 @@ class Host {
     for (int i = 0; i < plugin().getNumPrograms(); ++i)
       std::cout << plugin().getProgramName(i) << '\n';
   }
-  void program(const Words& words) { plugin().setCurrentProgram(whole(words.at(0))); }
+  void program(const Words& words) {
+    for (int i = 0; i < plugin().getNumPrograms(); ++i) {
+      if (plugin().getProgramName(i).toStdString() == words.at(0)) plugin().setCurrentProgram(i);
+    }
+  }
 
   void midi(const Words& words) {
     const auto byte = [&](std::size_t place) {

@@ -267,23 +267,17 @@ TEST_P(JuceHost, ADamagedStateIsRefusedWholeAndThePluginPlaysOn) {
 
 TEST_P(JuceHost, ItsProgramsAreThePresetsAndOneIsChosen) {
   const std::size_t last = info().presets.size() - 1;
-  Lines programs;
-  {
-    Session host = session();
-    load(host);
-    host.say("programs");
-    programs = host.run();
-  }
-  const auto place = std::ranges::find(programs, info().presets[last]);
-  ASSERT_NE(place, programs.end());
   Session host = session();
   load(host, 48000, 480);
-  host.say("program", place - programs.begin());
+  host.say("programs");
+  host.say("program", info().presets[last]);
   Story quiet;
   quiet.frames = 480;
   host.play(quiet, 480, "quiet");
   host.say("parameters");
   const Lines lines = host.run();
+  ASSERT_GT(lines.size(), last);
+  Lines programs(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(last) + 1);
   const auto itself = info().create();
   ASSERT_TRUE(itself->load_preset(last));
   const auto& table = *info().parameters;
@@ -295,7 +289,7 @@ TEST_P(JuceHost, ItsProgramsAreThePresetsAndOneIsChosen) {
                 (itself->parameter(i) - table[i].low) / (table[i].high - table[i].low), 1e-6)
         << *shown;
   }
-  std::ranges::sort(programs);  // LV2's have no order
+  std::ranges::sort(programs);  // LV2's come in any order
   Lines presets(info().presets.begin(), info().presets.end());
   std::ranges::sort(presets);
   EXPECT_EQ(programs, presets);

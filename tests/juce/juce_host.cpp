@@ -5,7 +5,10 @@
 //   juce_host vst3|lv2 SCRIPT
 //
 //   scan FOLDER                 all it finds, a line each, then "scanned"
-//   load NAME RATE_HZ FRAMES    one of them, with blocks of at most FRAMES
+//   load NAME RATE_HZ FRAMES    one of them, with blocks of at most FRAMES and every bus; a fourth
+//   word
+//                               leaves the buses as the plugin says
+//   prepare RATE_HZ FRAMES, reset
 //   parameters                  name, unit, value (0 to 1) and text of each
 //   set NAME VALUE              as a knob does
 //   text NAME VALUE, value NAME TEXT
@@ -102,12 +105,13 @@ class Host {
 
   void run(std::istream& script) {
     const std::map<std::string, void (Host::*)(const Words&)> verbs = {
-        {"scan", &Host::scan},           {"load", &Host::load},       {"set", &Host::set},
-        {"parameters", &Host::list},     {"text", &Host::text},       {"value", &Host::value},
-        {"programs", &Host::programs},   {"program", &Host::program}, {"midi", &Host::midi},
-        {"point", &Host::point},         {"song", &Host::song},       {"play", &Host::play},
-        {"save", &Host::save},           {"restore", &Host::restore}, {"mangle", &Host::mangle},
-        {"german", &Host::speak_german}, {"destroy", &Host::destroy}};
+        {"scan", &Host::scan},       {"load", &Host::load},     {"prepare", &Host::prepare},
+        {"reset", &Host::reset},     {"set", &Host::set},       {"parameters", &Host::list},
+        {"text", &Host::text},       {"value", &Host::value},   {"programs", &Host::programs},
+        {"program", &Host::program}, {"midi", &Host::midi},     {"point", &Host::point},
+        {"song", &Host::song},       {"play", &Host::play},     {"save", &Host::save},
+        {"restore", &Host::restore}, {"mangle", &Host::mangle}, {"german", &Host::speak_german},
+        {"destroy", &Host::destroy}};
     for (std::string line; std::getline(script, line);) {
       Words words;
       std::istringstream in(line);
@@ -145,11 +149,15 @@ class Host {
       if (plugin_ == nullptr) fail("not loaded: " + error.toStdString());
     }
     if (plugin_ == nullptr) fail("not found: " + words.at(0));
-    plugin_->enableAllBuses();
+    if (words.size() == 3) plugin_->enableAllBuses();
     plugin_->setPlayHead(&song_);
-    plugin_->prepareToPlay(rate_hz, frames);
-    rate_hz_ = rate_hz;
+    prepare({words.at(1), words.at(2)});
   }
+  void prepare(const Words& words) {
+    rate_hz_ = number(words.at(0));
+    plugin().prepareToPlay(rate_hz_, whole(words.at(1)));
+  }
+  void reset(const Words&) { plugin().reset(); }
   void destroy(const Words&) { plugin_.reset(); }
 
   juce::AudioPluginInstance& plugin() {

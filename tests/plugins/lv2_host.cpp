@@ -182,7 +182,7 @@ Channels Lv2Plugin::run(const Story& story) {
         static_cast<float>(value_of((*info_.parameters)[point.place], point.part));
   }
   for (float& control : controls_) descriptor_->connect_port(handle_, port++, &control);
-  descriptor_->run(handle_, static_cast<std::uint32_t>(story.frames));
+  call_block_([&] { descriptor_->run(handle_, static_cast<std::uint32_t>(story.frames)); });
   const auto& sequence_out = *reinterpret_cast<const LV2_Atom_Sequence*>(events_out_.data());
   LV2_ATOM_SEQUENCE_FOREACH(&sequence_out, event) {
     if (event->body.type != numbers_.at(LV2_MIDI__MidiEvent)) continue;

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <lv2/lv2.h>
@@ -30,6 +31,7 @@ class Lv2Plugin {
   /// One call of run(). Points count at its begin, as ports do.
   Channels run(const Story& story);
   Channels play(const Story& story, std::size_t block);
+  void call_blocks_by(CallBlock call) { call_block_ = std::move(call); }
   /// MIDI of all blocks since activate(), by its sample since then.
   const std::vector<Story::Midi>& given() const { return given_; }
   /// What save() stores under the plugin's own key.
@@ -49,6 +51,7 @@ class Lv2Plugin {
   std::vector<float> controls_;
   std::vector<std::uint64_t> events_in_, events_out_;
   bool is_active_ = false;
+  CallBlock call_block_ = [](const std::function<void()>& block) { block(); };
   std::size_t passed_ = 0;
   std::vector<Story::Midi> given_;
 };

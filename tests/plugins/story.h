@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "knotwave/plugins/plugin_list.h"
@@ -10,6 +11,8 @@
 namespace knotwave::test {
 
 using Channels = std::vector<std::vector<float>>;
+/// How a host makes its one call of a block.
+using CallBlock = std::function<void(const std::function<void()>& block)>;
 
 /// Times count from the sound's first sample, in order; no two happen at one sample.
 struct Story {

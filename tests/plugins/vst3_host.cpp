@@ -242,7 +242,10 @@ Channels Vst3Plugin::process(const Story& story, const std::vector<Vst3Value>& m
     song = context_of(story.song.front());
     data.ctx = &song;
   }
-  EXPECT_EQ(v3_cpp_obj(processor_)->process(processor_, &data), V3_OK);
+  given.all.reserve(4096);
+  v3_result done = V3_FALSE;
+  call_block_([&] { done = v3_cpp_obj(processor_)->process(processor_, &data); });
+  EXPECT_EQ(done, V3_OK);
   for (const v3_event& event : given.all) {
     given_.push_back({passed_ + static_cast<std::size_t>(event.sample_offset), bytes_of(event)});
   }

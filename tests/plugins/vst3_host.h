@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <travesty/audio_processor.h>
@@ -60,6 +61,7 @@ class Vst3Plugin {
   Channels process(const Story& story, const std::vector<Vst3Value>& more = {});
   /// A story in blocks.
   Channels play(const Story& story, std::size_t block);
+  void call_blocks_by(CallBlock call) { call_block_ = std::move(call); }
   /// MIDI of all blocks since start(), by its sample since then.
   const std::vector<Story::Midi>& given() const { return given_; }
 
@@ -78,6 +80,7 @@ class Vst3Plugin {
   v3_midi_mapping** mapping_ = nullptr;
   std::vector<int> inputs_, outputs_;  ///< channels of each bus
   bool is_started_ = false;
+  CallBlock call_block_ = [](const std::function<void()>& block) { block(); };
   std::size_t passed_ = 0;
   std::vector<Story::Midi> given_;
   std::vector<v3_param_info> parameters_;

@@ -188,6 +188,11 @@ dpf_mend(src/DistrhoPluginVST.hpp "kVst3InternalParameterMidiCC_start + 130*16,
     kVst3InternalParameterCount = kVst3InternalParameterMidiCC_end" "kVst3InternalParameterMidiCC_start + 130*16 - 1,
     kVst3InternalParameterCount = kVst3InternalParameterMidiCC_end + 1")
 
+# Several hosts leave out parameters whose name begins so, as they do with those of JUCE. By another name Ardour takes
+# them for knobs, keeps them in its sessions and sends all of them when it opens one: volume 0 on every channel.
+dpf_mend(${vst3} "\"MIDI Ch. %d CC %d\", static_cast<uint8_t>(index / 130) + 1, index % 130"
+  "\"MIDI CC %u|%u\", index / 130 + 1, index % 130")
+
 # A host reads what it set. What it sets while nothing is processed counts at once, and is saved.
 dpf_mend(${vst3} "        _setNormalizedPluginParameterValue(index, normalized);
        #endif

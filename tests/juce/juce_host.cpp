@@ -173,7 +173,7 @@ class Host {
   void list(const Words&) {
     for (juce::AudioProcessorParameter* one : plugin().getParameters()) {
       const std::string name = one->getName(1024).toStdString();
-      if (name.starts_with("MIDI Ch.")) continue;  // stand for controllers in VST3
+      if (name.starts_with("MIDI CC ")) continue;  // stand for controllers in VST3
       std::cout << name << '\t' << one->getLabel() << '\t' << one->getValue() << '\t'
                 << one->getCurrentValueAsText() << '\n';
     }

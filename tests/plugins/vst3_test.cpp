@@ -309,6 +309,27 @@ TEST_P(Vst3Notes, ABendHasItsSteps) {
   EXPECT_EQ(bend.step_count, 16383);
 }
 
+// Hosts leave out what is called so. Ardour kept all 2080 in its sessions otherwise, and sent them
+// when it opened one: volume 0 on every channel.
+TEST_P(Vst3Notes, WhatStandsForControllersIsNamedAsHostsKnowIt) {
+  const auto played = plugin();
+  for (int controller = 0; controller < 130; ++controller) {
+    v3_param_info info{};
+    ASSERT_EQ(v3_cpp_obj(played->controller())
+                  ->get_parameter_info(
+                      played->controller(),
+                      static_cast<std::int32_t>(played->of_controller(15, controller)), &info),
+              V3_OK);
+    std::string name;
+    for (const int letter : info.title) {
+      if (letter == 0) break;
+      name += static_cast<char>(letter);
+    }
+    EXPECT_EQ(name, "MIDI CC 16|" + std::to_string(controller));
+    EXPECT_NE(info.flags & V3_PARAM_IS_HIDDEN, 0);
+  }
+}
+
 TEST_P(Vst3Notes, AHeldNoteEndsWhereTheHostStopsChangesTheRateOrSwitchesOff) {
   Story held, quiet;
   held.frames = quiet.frames = 4800;

@@ -194,7 +194,8 @@ class DpfPlugin : public Plugin, public kw::DpfBeyond {
   /// VST3 makes its class id of it: of the key's first four letters, the instrument's apart.
   std::int64_t getUniqueId() const override {
     const std::string_view key = info().key == "instrument" ? "Knwv" : info().key;
-    return d_cconst(key[0], key[1], key[2], key[3]);
+    const auto letter = [&](std::size_t place) { return static_cast<std::uint8_t>(key[place]); };
+    return d_cconst(letter(0), letter(1), letter(2), letter(3));
   }
 
   /// The main ports have the symbols that DPF gives them ("lv2_audio_in_1"): hosts keep them.

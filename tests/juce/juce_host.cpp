@@ -6,8 +6,7 @@
 //
 //   scan FOLDER                 all it finds, a line each, then "scanned"
 //   load NAME RATE_HZ FRAMES    one of them, with blocks of at most FRAMES and every bus; a fourth
-//   word
-//                               leaves the buses as the plugin says
+//                               word leaves the buses as the plugin says
 //   prepare RATE_HZ FRAMES, reset
 //   parameters                  name, unit, value (0 to 1) and text of each
 //   set NAME VALUE              as a knob does
@@ -15,9 +14,10 @@
 //   programs, program NAME
 //   midi SAMPLE BYTE BYTE BYTE, point SAMPLE NAME VALUE    of the next play
 //   song BPM QUARTERS 0|1       the host's, from the next block on
-//   play FRAMES BLOCK IN OUT    files of floats, one channel after the other; IN may be -; OUT.midi
-//                               has what it gave: sample and bytes of each
-//   save FILE, restore FILE, mangle FROM TO FILE NEWFILE
+//   play FRAMES BLOCK IN OUT    files of floats, one channel after the other; IN may be -;
+//                               OUT.midi has what it gave: sample and bytes of each
+//   save FILE, restore FILE
+//   mangle FROM TO FILE NEW     a state whose last FROM is TO
 //   german                      the locale de_DE.UTF-8
 //   destroy
 #include <clocale>

@@ -8,8 +8,8 @@
 // value wins, and among lanes priority, then the one that waits longest; a controller that has
 // waited 10 ms goes before the next bend or pressure. A receiver holds what it heard until it hears
 // more: where a value runs faster than its messages, the mean of what it does meanwhile is sent,
-// but for the lowest and the highest step that the lane has had, which are always reached, and the
-// last value, which is always sent.
+// but for the lowest and the highest step that the lane has had, which are always reached (but see
+// LaneSpec::rest_step), and the last value, which is always sent.
 //
 // What a value of 14 bits costs: the upper half, then the lower; the lower alone while the upper is
 // the same; the upper alone while the lower was and is 0, which is how a value that runs by more

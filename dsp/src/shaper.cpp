@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "knotwave/base/fit_input.h"
 #include "knotwave/base/index.h"
-
-#include "shaper_input.h"
 
 namespace knotwave::dsp {
 namespace {
@@ -80,7 +79,7 @@ Result<ShaperProgram> ShaperProgram::create(const curves::NurbsCurve& curve,
 }
 
 ShaperProgram::Input ShaperProgram::locate(double x, int hint) const KNOTWAVE_RT {
-  x = shaper_input(x);
+  x = base::fit_input(x);
   const int near = std::clamp(hint, 0, pieces_ - 1);
   if (breaks_[index_of(near)] <= x && x < breaks_[index_of(near) + 1]) return {x, near};
   const auto after = std::upper_bound(breaks_.begin(), breaks_.end(), x);
@@ -159,7 +158,7 @@ void Shaper::render(const ShaperProgram& program, std::span<const float> drive,
   const double wet = mix > 0 ? std::min(static_cast<double>(mix), 1.0) : 0.0;
   ShaperProgram::Input last = program.locate(last_, last_piece_);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const double dry = shaper_input(static_cast<double>(in[i]));
+    const double dry = base::fit_input(static_cast<double>(in[i]));
     const ShaperProgram::Input input =
         program.locate(static_cast<double>(drive[i]) * dry, last.piece);
     for (std::size_t k = 0; k < moved; ++k) now[k] = controls[k][i];

@@ -4,11 +4,25 @@
 #include <array>
 #include <limits>
 
+#include "knotwave/base/fit_input.h"
 #include "knotwave/dsp/shaper.h"
 
-#include "shaper_input.h"
-
 namespace knotwave::dsp {
+namespace {
+
+/// What moves one layer, at one sample.
+struct OneLayer {
+  double drive, bias, level, weight, wet;
+
+  OneLayer(const ShaperLayer& layer, const ShaperMotion& motion, std::size_t i) KNOTWAVE_RT
+      : drive(static_cast<double>(motion.drive[i])),
+        bias(motion.bias[i]),
+        level(motion.level[i]),
+        weight(layer.weight[i]<0 || layer.weight[i]> 0 ? layer.weight[i] : 0),
+        wet(motion.mix[i] > 0 ? std::min(motion.mix[i], 1.0) : 0.0) {}
+};
+
+}  // namespace
 
 /// Where the layers are: each has pieces of its own.
 struct Shaper::Blend {
@@ -47,16 +61,51 @@ struct Shaper::Blend {
   }
 };
 
+template <bool rests>
+void Shaper::render_one(const ShaperLayer& layer, const ShaperMotion& motion,
+                        std::span<const float> in, std::span<float> out) KNOTWAVE_RT {
+  if (out.empty()) return;
+  const ShaperProgram& program = *layer.program;
+  ShaperProgram::Input last = program.locate(last_, last_piece_);
+  OneLayer now(layer, motion, 0);
+  double at_rest = now.level == 0 ? 0 : program.at(now.bias), taken = now.level * at_rest;
+  double last_dry = last_dry_;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if constexpr (!rests) {
+      const double bias = now.bias, level = now.level;
+      now = OneLayer(layer, motion, i);
+      if (now.level != 0 && (now.bias != bias || level == 0)) at_rest = program.at(now.bias);
+      taken = now.level == 0 ? 0 : now.level * at_rest;
+    }
+    const double dry = base::fit_input(static_cast<double>(in[i]));
+    const ShaperProgram::Input input = program.locate(now.drive * dry + now.bias, last.piece);
+    double shaped = 0;
+    if (now.weight != 0) {
+      shaped = now.weight * (program.still_mean(last, input) - taken);
+    }
+    out[i] = static_cast<float>(now.wet * shaped + (1 - now.wet) * (0.5 * (dry + last_dry)));
+    last = input;
+    last_dry = dry;
+  }
+  last_dry_ = last_dry;
+  last_ = last.x;
+  last_piece_ = last.piece;
+}
+
 void Shaper::render(std::span<const ShaperLayer> layers, const ShaperMotion& motion,
                     std::span<const float> in, std::span<float> out) KNOTWAVE_RT {
+  if (layers.size() == 1 && layers[0].program->control_count() == 0) {
+    return motion.rests ? render_one<true>(layers[0], motion, in, out)
+                        : render_one<false>(layers[0], motion, in, out);
+  }
   Blend blend(layers);
   blend.start(last_, last_piece_);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const double dry = shaper_input(static_cast<double>(in[i]));
+    const double dry = base::fit_input(static_cast<double>(in[i]));
     const double bias = motion.bias[i];
     const double level = motion.level[i];
     if (level != 0 && bias != blend.bias) blend.rest_at(bias);
-    last_ = shaper_input(static_cast<double>(motion.drive[i]) * dry + bias);
+    last_ = base::fit_input(static_cast<double>(motion.drive[i]) * dry + bias);
     const double shaped = blend.step(last_, level, i);
     const double wet = motion.mix[i] > 0 ? std::min(motion.mix[i], 1.0) : 0.0;
     out[i] = static_cast<float>(wet * shaped + (1 - wet) * (0.5 * (dry + last_dry_)));

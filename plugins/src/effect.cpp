@@ -6,15 +6,20 @@
 #include <cmath>
 
 #include "knotwave/base/document.h"
+#include "knotwave/base/elementary.h"
+#include "knotwave/base/fit_input.h"
 #include "knotwave/base/fp_state.h"
-
-#include "conditioned.h"
 
 namespace knotwave::plugins {
 namespace {
 
 constexpr double kLowestRate = 8000, kHighestRate = 768000;
 constexpr float kQuiet = 1e-6F;
+
+/// So many as compilers know, and nothing else is there: they make vectors of it.
+void fit_part(const float* __restrict from, float* __restrict to) KNOTWAVE_RT {
+  for (std::size_t i = 0; i < Effect::kPart; ++i) to[i] = base::fit_input(from[i]);
+}
 
 std::size_t channels(std::span<const AudioPort> ports) {
   std::size_t all = 0;
@@ -109,6 +114,25 @@ void Effect::begin(const Block& block) KNOTWAVE_RT {
   values_.take_news([this](std::size_t place, double value) { change(place, value); });
 }
 
+void Effect::glide(std::size_t place, PartValues& out) const KNOTWAVE_RT {
+  const dsp::Smoother& glide = glides_[place];
+  if (glide.is_still(now_)) return out.fill(glide.target());
+  out.is_one = false;
+  glide.render(now_, std::span(out.at).first(part_size_));
+}
+
+void Effect::glide_gain(std::size_t place, PartGains& out) const KNOTWAVE_RT {
+  const bool was_one = out.db.is_one && out.gain.is_one;
+  const double before = out.db.at[0];
+  glide(place, out.db);
+  if (out.db.is_one) {
+    if (!was_one || before != out.db.at[0]) out.gain.fill(base::db_to_gain(out.db.at[0]));
+    return;
+  }
+  out.gain.is_one = false;
+  for (std::size_t i = 0; i < part_size_; ++i) out.gain.at[i] = base::db_to_gain(out.db.at[i]);
+}
+
 void Effect::add(const engine::Event& event) KNOTWAVE_RT {
   render_until(event.time().sample);
   hear(event);
@@ -147,8 +171,15 @@ void Effect::render_until(std::int64_t sample) KNOTWAVE_RT {
 void Effect::read_inputs() KNOTWAVE_RT {
   for (std::size_t channel = 0; channel < inputs_; ++channel) {
     const float* const from = channel < block_.in.size() ? block_.in[channel] : nullptr;
-    for (std::size_t i = 0; i < part_size_; ++i) {
-      in_[channel][i] = from == nullptr ? 0 : conditioned(from[done_ + i]);
+    std::array<float, kPart>& in = in_[channel];
+    if (from == nullptr) {
+      std::fill_n(in.begin(), part_size_, 0.0F);
+      continue;
+    }
+    if (part_size_ == kPart) {
+      fit_part(from + done_, in.data());
+    } else {
+      for (std::size_t i = 0; i < part_size_; ++i) in[i] = base::fit_input(from[done_ + i]);
     }
   }
 }

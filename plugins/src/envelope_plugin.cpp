@@ -7,11 +7,10 @@
 #include <cmath>
 #include <utility>
 
+#include "knotwave/base/fit_input.h"
 #include "knotwave/engine/channel_state.h"
 #include "knotwave/engine/map_slots.h"
 #include "knotwave/plugins/plugin_list.h"
-
-#include "conditioned.h"
 
 namespace knotwave::plugins {
 namespace {
@@ -299,7 +298,7 @@ void EnvelopePlugin::pass_through() KNOTWAVE_RT {
     if (in == nullptr) {
       std::fill_n(out, block_.frames, 0.0F);
     } else {
-      std::transform(in, in + block_.frames, out, conditioned);
+      std::transform(in, in + block_.frames, out, base::fit_input<float>);
     }
   }
 }

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "knotwave/base/elementary.h"
 #include "knotwave/dsp/filter.h"
 #include "knotwave/dsp/shaper.h"
 #include "knotwave/plugins/effect.h"
@@ -118,6 +117,10 @@ class ShaperPlugin final : public Effect {
 
   void choose(std::size_t place, int number) KNOTWAVE_RT override {
     if (place <= Place::curve_b) slots_[place].choose(chosen(place, number));
+    // Faded in, the filter begins with what it is given. However a block is split: at 0 it may have
+    // rested, elsewhere never.
+    if (place != Place::dc_block || value_now(place) != 0) return;
+    for (auto& filter : filters_) filter.reset();
   }
 
   std::size_t begin_part() KNOTWAVE_RT override {
@@ -133,60 +136,87 @@ class ShaperPlugin final : public Effect {
   std::span<const dsp::ShaperLayer> layers() KNOTWAVE_RT {
     const std::size_t n = part_size();
     std::size_t count = 0;
-    const auto add = [&](const ShaperProgram& program) -> std::span<double> {
-      const std::span<double> weight = std::span(weights_[count]).first(n);
-      layers_[count++] = {&program, weight};
-      return weight;
+    const auto add = [&](const ShaperProgram& program) -> PartValues& {
+      layers_[count] = {&program, std::span(weights_[count].at).first(n)};
+      return weights_[count++];
     };
-    glide(Place::morph, std::span(morphs_).first(n));
+    glide(Place::morph, morphs_);
+    const auto& morph = morphs_.at;
     for (std::size_t slot = 0; slot < kSlots; ++slot) {
-      const auto share = [&](std::size_t i) { return slot == 0 ? 1 - morphs_[i] : morphs_[i]; };
-      if (is_still(Place::morph) && share(0) == 0) continue;  // unheard
-      const std::span<double> to = add(slots_[slot].to());
-      if (slots_[slot].is_still()) {
-        for (std::size_t i = 0; i < n; ++i) to[i] = share(i);
+      const auto share = [&](std::size_t i) { return slot == 0 ? 1 - morph[i] : morph[i]; };
+      if (morphs_.is_one && share(0) == 0) continue;  // unheard
+      PartValues& to = add(slots_[slot].to());
+      if (slots_[slot].is_still() && morphs_.is_one) {
+        to.fill(share(0));
         continue;
       }
-      const std::span<double> from = add(slots_[slot].from());
-      slots_[slot].weights(now(), to);
+      to.is_one = false;
+      if (slots_[slot].is_still()) {
+        for (std::size_t i = 0; i < n; ++i) to.at[i] = share(i);
+        continue;
+      }
+      PartValues& from = add(slots_[slot].from());
+      from.is_one = false;
+      slots_[slot].weights(now(), std::span(to.at).first(n));
       for (std::size_t i = 0; i < n; ++i) {
-        from[i] = share(i) * (1 - to[i]);
-        to[i] = share(i) * to[i];
+        from.at[i] = share(i) * (1 - to.at[i]);
+        to.at[i] = share(i) * to.at[i];
       }
     }
     return std::span(layers_).first(count);
   }
 
-  void gains(std::size_t place, std::span<double> out) KNOTWAVE_RT {
-    glide(place, out);
-    if (is_still(place)) {
-      std::fill(out.begin(), out.end(), base::db_to_gain(out[0]));
-    } else {
-      for (double& value : out) value = base::db_to_gain(value);
+  /// Of the drive's gains, as floats.
+  void render_drives() KNOTWAVE_RT {
+    glide_gain(Place::drive, driven_);
+    const bool is_one = driven_.gain.is_one;
+    if (is_one && drives_are_one_ && drives_[0] == static_cast<float>(driven_.gain.at[0])) return;
+    drives_are_one_ = is_one;
+    const std::size_t n = is_one ? kPart : part_size();
+    for (std::size_t i = 0; i < n; ++i) drives_[i] = static_cast<float>(driven_.gain.at[i]);
+  }
+
+  /// The direct current taken away, as far as that is wanted, and the output's gain. A filter that
+  /// nobody hears rests.
+  void finish(std::size_t channel) KNOTWAVE_RT {
+    const std::span<float> out = output(channel);
+    const std::size_t n = part_size();
+    const bool is_open = levels_.is(0), is_closed = levels_.is(1);
+    if (!is_open) {
+      filters_[channel].render(dsp::FilterKind::high, rate_hz(), std::span(corners_).first(n),
+                               std::span(resonances_).first(n), out,
+                               is_closed ? out : std::span(blocked_).first(n));
+    }
+    const auto& gain = gains_.gain;
+    if (!is_open && !is_closed) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const double level = levels_.at[i], open = static_cast<double>(out[i]);
+        const double closed = static_cast<double>(blocked_[i]);
+        out[i] = static_cast<float>(gain.at[i] * (level * closed + (1 - level) * open));
+      }
+    } else if (!gain.is(1)) {
+      for (std::size_t i = 0; i < n; ++i) {
+        out[i] = static_cast<float>(gain.at[i] * static_cast<double>(out[i]));
+      }
     }
   }
 
   void render_part() KNOTWAVE_RT override {
     const std::size_t n = part_size();
-    const auto part = [n](auto& values) { return std::span(values).first(n); };
     const auto curves = layers();
-    gains(Place::drive, part(gains_));
-    for (std::size_t i = 0; i < n; ++i) drives_[i] = static_cast<float>(gains_[i]);
-    gains(Place::output, part(gains_));
-    glide(Place::bias, part(biases_));
-    glide(Place::mix, part(mixes_));
-    glide(Place::dc_block, part(levels_));
-    const dsp::ShaperMotion motion{part(drives_), part(biases_), part(levels_), part(mixes_)};
+    render_drives();
+    glide_gain(Place::output, gains_);
+    glide(Place::bias, biases_);
+    glide(Place::mix, mixes_);
+    glide(Place::dc_block, levels_);
+    const auto part = [n](const auto& values) { return std::span(values).first(n); };
+    const dsp::ShaperMotion motion{part(drives_), part(biases_.at), part(levels_.at),
+                                   part(mixes_.at),
+                                   curves.size() == 1 && drives_are_one_ && biases_.is_one &&
+                                       levels_.is_one && mixes_.is_one && weights_[0].is_one};
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
-      const std::span<float> out = output(channel);
-      shapers_[channel].render(curves, motion, input(channel), out);
-      filters_[channel].render(dsp::FilterKind::high, rate_hz(), part(corners_), part(resonances_),
-                               out, part(blocked_));
-      for (std::size_t i = 0; i < n; ++i) {
-        const double level = levels_[i], open = static_cast<double>(out[i]);
-        const double closed = static_cast<double>(blocked_[i]);
-        out[i] = static_cast<float>(gains_[i] * (level * closed + (1 - level) * open));
-      }
+      shapers_[channel].render(curves, motion, input(channel), output(channel));
+      finish(channel);
     }
   }
 
@@ -197,12 +227,13 @@ class ShaperPlugin final : public Effect {
   std::array<dsp::StateVariableFilter, kChannels> filters_;
 
   // Of a part.
-  using Doubles = std::array<double, kPart>;
   using Floats = std::array<float, kPart>;
   std::array<dsp::ShaperLayer, dsp::Shaper::kMostLayers> layers_;
-  std::array<Doubles, dsp::Shaper::kMostLayers> weights_{};
-  Doubles morphs_{}, gains_{}, biases_{}, mixes_{}, levels_{};
+  std::array<PartValues, dsp::Shaper::kMostLayers> weights_{};
+  PartValues morphs_, biases_, mixes_, levels_;
+  PartGains driven_, gains_;
   Floats drives_{}, blocked_{};
+  bool drives_are_one_ = false;
   const Floats resonances_{};
   const Floats corners_ = [] {
     Floats corners;

@@ -180,7 +180,34 @@ TEST(ShaperPlugin, BlockSizeDoesNotMatterNorWhetherItWorksInPlace) {
 TEST(ShaperPlugin, SoundsAsItAlwaysDid) {
   const auto plugin = active(shaper_info(), {{"curve_a", "Valve"}});
   EXPECT_EQ(support::hash_of(play(*plugin, music(2, 48000), {.actions = automation()})),
-            "577ebae8caed18c4d629244488c6a7fb1a75681c4dad889b51a43a81e36f55ec");
+            "932ac25b8a7c22fbf405b76be8c2e2289160b4d76d7c7d6499a8a0c063229e5b");
+}
+
+/// Of a filter that has rested: loud direct current, and the switch.
+TEST(ShaperPlugin, SwitchingTheDirectCurrentBlockDoesNotClick) {
+  constexpr std::int64_t kOff = 9600, kOn = 19200;
+  const std::size_t place = place_of(shaper_info(), "dc_block");
+  Channels in(2, std::vector<float>(28800));
+  for (auto& channel : in) {
+    for (std::size_t i = 0; i < channel.size(); ++i) {
+      channel[i] = 0.4F + 0.3F * static_cast<float>(std::sin(0.01 * static_cast<double>(i)));
+    }
+  }
+  const auto plugin = active(shaper_info(), {{"curve_a", "Straight"}});
+  const Channels out =
+      play(*plugin, in, {.actions = {set_at(kOff, place, 0), set_at(kOn, place, 1)}});
+  const auto steepest = [&](std::int64_t from, std::int64_t to) {
+    float most = 0;
+    for (auto i = static_cast<std::size_t>(from); i < static_cast<std::size_t>(to); ++i) {
+      most = std::max(most, std::abs(out[0][i] - out[0][i - 1]));
+    }
+    return most;
+  };
+  // 0.4 in 5 ms is 0.0031 a sample at its steepest; the sine has 0.003.
+  EXPECT_LT(steepest(4800, kOn), 0.0065F);
+  // It begins where the signal is, and comes to rest around 0 without a step.
+  EXPECT_LT(steepest(kOn, 28800), 0.0065F);
+  EXPECT_NEAR(*std::max_element(out[0].end() - 1000, out[0].end()), 0.3, 0.02);
 }
 
 TEST(ShaperPlugin, NoInputAndNoAutomationGivesNanOrPoisonsIt) {

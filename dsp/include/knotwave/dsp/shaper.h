@@ -75,6 +75,7 @@ struct ShaperMotion {
   std::span<const double> bias;   ///< is added to it then
   std::span<const double> level;  ///< how much of the blend's value at rest (input 0) is taken away
   std::span<const double> mix;    ///< clamped to 0..1, NaN = 0
+  bool rests = false;  ///< every number, the layers' weights too, is the first one all the time
 };
 
 /// One channel's memory: the last input.
@@ -106,6 +107,9 @@ class Shaper {
 
  private:
   struct Blend;
+  template <bool rests>
+  void render_one(const ShaperLayer& layer, const ShaperMotion& motion, std::span<const float> in,
+                  std::span<float> out) KNOTWAVE_RT;
   double last_ = 0;
   double last_dry_ = 0;
   int last_piece_ = 0;  ///< only a hint

@@ -108,6 +108,25 @@ class Effect : public Plugin {
   void glide(std::size_t place, std::span<double> out) const KNOTWAVE_RT {
     glides_[place].render(now_, out);
   }
+  /// A part's values of a number, kept from part to part: while it rests nothing is worked out.
+  struct PartValues {
+    std::array<double, kPart> at{};
+    bool is_one = true;  ///< at[0] everywhere, behind the part too
+
+    void fill(double value) KNOTWAVE_RT {
+      if (!is_one || at[0] != value) at.fill(value);
+      is_one = true;
+    }
+    bool is(double value) const KNOTWAVE_RT { return is_one && at[0] == value; }
+  };
+  void glide(std::size_t place, PartValues& out) const KNOTWAVE_RT;
+  /// Of a parameter in decibels.
+  struct PartGains {
+    PartValues db, gain{.at = {}, .is_one = false};
+  };
+  void glide_gain(std::size_t place, PartGains& out) const KNOTWAVE_RT;
+  /// Of a parameter as it glides, at now().
+  double value_now(std::size_t place) const KNOTWAVE_RT { return glides_[place].value_at(now_); }
   bool is_still(std::size_t place) const KNOTWAVE_RT { return glides_[place].is_still(now_); }
   double heard(std::size_t place) const KNOTWAVE_RT { return values_.heard(place); }
   int choice(std::size_t place) const KNOTWAVE_RT { return static_cast<int>(heard(place)); }

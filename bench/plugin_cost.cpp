@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
-// plugin_cost engine|instrument|clap BLOCKS: the same notes and parameters through the engine
-// itself, through the plugins' own class, and through the CLAP file, for callgrind: the
-// instructions of two runs of different length, subtracted, are those of their blocks. plugin_cost
-// scan FILE: what a host's scan of a CLAP file takes.
+// plugin_cost WAY BLOCKS: the same notes and parameters through the engine itself, through the
+// plugins' own class and through the CLAP, LV2 and VST3 files, or the same sound through an effect
+// and through what it is made of, for callgrind: the instructions of two runs of different length,
+// subtracted, are those of their blocks. plugin_cost scan FILE: what a host's scan of a CLAP file
+// takes.
+#include "plugin_cost.h"
+
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
@@ -21,31 +25,16 @@
 #include "knotwave/plugins/factory.h"
 #include "knotwave/plugins/instrument.h"
 
+#include "plugin_cost_told.h"
+
 namespace {
 
 using namespace knotwave;
 
-constexpr std::size_t kBlock = 64;
-constexpr double kRate = 48000;
-
-/// What is told in a block: now and then a chord begins or ends, a parameter moves in every fourth.
-struct Told {
-  std::vector<std::array<std::uint8_t, 3>> midi;
-  double cutoff = 0;
-  bool moves = false;
-};
-Told told_in(int block) {
-  Told told;
-  constexpr std::uint8_t kChord[] = {48, 55, 60, 64, 67, 71, 74, 79};
-  if (block % 200 == 0) {
-    for (const std::uint8_t key : kChord) told.midi.push_back({0x90, key, 100});
-  } else if (block % 200 == 150) {
-    for (const std::uint8_t key : kChord) told.midi.push_back({0x80, key, 64});
-  }
-  told.moves = block % 4 == 1;
-  told.cutoff = -0.1 * (block % 40);
-  return told;
-}
+using bench::kBlock;
+using bench::kRate;
+using bench::Told;
+using bench::told_in;
 
 const plugins::Parameter& cutoff() {
   return plugins::Instrument::table()[plugins::Instrument::table().of_word("cutoff")];
@@ -211,9 +200,23 @@ int main(int argc, char** argv) {
   const std::string verb = argc == 3 ? argv[1] : "";
   if (verb == "scan") return scan(argv[2]);
   const int blocks = argc == 3 ? std::atoi(argv[2]) : 0;
-  if (blocks > 0 && verb == "engine") return std::cout << by_engine(blocks) << "\n", 0;
-  if (blocks > 0 && verb == "instrument") return std::cout << by_instrument(blocks) << "\n", 0;
-  if (blocks > 0 && verb == "clap") return std::cout << by_clap(blocks) << "\n", 0;
-  std::cerr << "usage: plugin_cost engine|instrument|clap BLOCKS, or plugin_cost scan FILE\n";
+  double sum = std::nan("");
+  if (blocks > 0 && verb == "engine") {
+    sum = by_engine(blocks);
+  } else if (blocks > 0 && verb == "instrument") {
+    sum = by_instrument(blocks);
+  } else if (blocks > 0 && verb == "clap") {
+    sum = by_clap(blocks);
+  } else if (blocks > 0 && (verb == "lv2" || verb == "vst3")) {
+#ifdef KNOTWAVE_LV2_FILE
+    sum = bench::by_host(verb, blocks);
+#endif
+  } else if (blocks > 0) {
+    sum = bench::by_effect(verb, blocks);
+  }
+  if (sum == sum) return std::cout << sum << "\n", 0;
+  std::cerr << "usage: plugin_cost WAY BLOCKS, or plugin_cost scan FILE; ways: engine, instrument, "
+               "clap, lv2, vst3, shaper[-dc][-dsp], crossfade[-dsp], curve, "
+               "envelope[-engine]-16|64|512\n";
   return 2;
 }

@@ -213,6 +213,37 @@ TEST(TakeMidi, BeginsWithWhatWasPlayedBeforeButNotWithNotesThatHadEnded) {
   EXPECT_EQ(song->length_ticks, 1000u);
 }
 
+TEST(TakeMidi, EndsWhatAChokeCut) {
+  engine::Journal journal;
+  journal.end = 1000;
+  engine::JournalRecord on;
+  on.note = 7;
+  on.bytes[0] = 0x92;
+  on.bytes[1] = 60;
+  on.bytes[2] = 100;
+  journal.records.push_back(on);
+  const auto choke = [&](std::int64_t sample, std::int32_t note, int channel, int key) {
+    engine::JournalRecord record;
+    record.time.sample = sample;
+    record.kind = engine::Event::Kind::choke;
+    record.note = note;
+    record.bytes[0] = static_cast<std::uint8_t>(channel);
+    record.bytes[1] = static_cast<std::uint8_t>(key);
+    journal.records.push_back(record);
+  };
+  choke(100, 7, 0, 0);
+  choke(200, -1, 3, 64);
+  choke(300, -1, 4, engine::Event::kEveryKey);
+  const auto song = midi_song(journal);
+  ASSERT_TRUE(song);
+  std::vector<std::array<int, 3>> events;
+  for (const io::SongEvent& event : song->events) {
+    events.push_back({static_cast<int>(event.tick), event.bytes[0], event.bytes[1]});
+  }
+  EXPECT_EQ(events, (std::vector<std::array<int, 3>>{
+                        {0, 0x92, 60}, {100, 0x82, 60}, {200, 0x83, 64}, {300, 0xB4, 120}}));
+}
+
 TEST(TakeMidi, RendersToTheSameSamplesAsTheJournalWhereTheTakeBeginsAtTheStart) {
   const support::ScratchFolder folder;
   Session session(folder.file("small.toml"));

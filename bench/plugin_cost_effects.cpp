@@ -211,7 +211,7 @@ double envelope_by_class(int blocks, std::size_t frames) {
 }  // namespace
 
 double by_effect(std::string_view way, int blocks) {
-  for (const std::size_t frames : {16, 64, 512}) {
+  for (const std::size_t frames : {16U, 64U, 512U}) {
     if (way == "envelope-engine-" + std::to_string(frames))
       return envelope_by_engine(blocks, frames);
     if (way == "envelope-" + std::to_string(frames)) return envelope_by_class(blocks, frames);

@@ -142,8 +142,21 @@ void EnvelopeGenerator::State::note_addresses() KNOTWAVE_RT {
     if (route.spec.channel != 0) address.channel = route.spec.channel;
     if (route.spec.kind != OutputKind::poly_pressure) address.key = 0;
     if (addresses[i] == address) continue;
+    leave_address(route, i);
     route.told[address.place()] = true;
     set_address(i, address, now);
+  }
+}
+
+/// A voice that stays where another one spoke to the last says its own value again.
+void EnvelopeGenerator::State::leave_address(const GeneratorRoute& route,
+                                             std::size_t lane) KNOTWAVE_RT {
+  const auto first = static_cast<std::size_t>(route.first_lane);
+  for (std::size_t i = first; i < first + static_cast<std::size_t>(route.lanes); ++i) {
+    if (i == lane || !rows[i].is_told || addresses[i] != addresses[lane]) continue;
+    rows[i].still = 0;
+    const GeneratorLane& way = table.lanes[i];
+    ports[static_cast<std::size_t>(way.port)]->say_again(way.port_lane);
   }
 }
 

@@ -61,6 +61,7 @@ struct EnvelopeGenerator::State {
   // From players to rows.
   void note_addresses() KNOTWAVE_RT;
   void set_address(std::size_t lane, LaneAddress address, std::int64_t from) KNOTWAVE_RT;
+  void leave_address(const GeneratorRoute& route, std::size_t lane) KNOTWAVE_RT;
   void note_newest(const Event& event) KNOTWAVE_RT;
   int source_route(const GeneratorLane& lane) const KNOTWAVE_RT;
   void fill_rows(std::size_t n) KNOTWAVE_RT;

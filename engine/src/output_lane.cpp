@@ -69,6 +69,7 @@ void OutputLane::forget(Ticks now, Ticks time, Ticks until) KNOTWAVE_RT {
   if (has_value_) see_until(now, kNever);
   forget_halves();
   sent_ = sent_before_ = -1;
+  must_say_again_ = false;
   if (!has_value_) return;
   arrived_ = not_before_ = std::max(time, arrived_);
   find_change(arrived_, until);

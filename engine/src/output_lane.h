@@ -56,6 +56,9 @@ class OutputLane {
   void forget_halves() KNOTWAVE_RT { high_half_ = low_half_ = -1; }
   /// What the receiver holds is unknown from `time` on; `now` is when that began.
   void forget(Ticks now, Ticks time, Ticks until) KNOTWAVE_RT;
+  /// It is forgotten with the next block.
+  void say_again() KNOTWAVE_RT { must_say_again_ = true; }
+  bool must_say_again() const KNOTWAVE_RT { return must_say_again_; }
   /// New samples: looks for the next change up to `until`.
   void begin_block(std::int64_t first, std::span<const double> values, Ticks until) KNOTWAVE_RT;
   void end_block(std::int64_t n) KNOTWAVE_RT;
@@ -119,7 +122,7 @@ class OutputLane {
   Ticks left_at_ = kNever;
   int next_step_ = 0;            ///< what it goes to then
   Ticks begins_not_before_ = 0;  ///< what is said then is shorter than next_step_
-  bool has_value_ = false, has_begun_ = false;
+  bool has_value_ = false, has_begun_ = false, must_say_again_ = false;
   LaneCurve curve_;
   Extremes extremes_;
   std::int64_t seen_ = -1;           ///< the last sample that extremes_ knows

@@ -132,10 +132,13 @@ void OutputPort::State::begin_block(std::int64_t first, std::size_t n,
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     lanes[i].begin_block(first, i < values.size() ? values[i] : LaneValues{}, until);
   }
-  if (!std::exchange(must_say_again, false)) return;
-  selections = {};
+  const bool all = std::exchange(must_say_again, false);
+  if (all) selections = {};
   const Ticks now = sample_ticks(first);
-  for (OutputLane& lane : lanes) lane.forget(now - 1, std::max(now, cable.free_at()), until);
+  for (OutputLane& lane : lanes) {
+    if (!lane.must_say_again() && !all) continue;
+    lane.forget(now - 1, std::max(now, cable.free_at()), until);
+  }
 }
 
 void OutputPort::State::offer(Candidate& best, const Candidate& other,
@@ -408,6 +411,9 @@ void OutputPort::render(std::int64_t first, std::size_t n, std::span<const LaneV
 }
 
 void OutputPort::say_again() KNOTWAVE_RT { state_->must_say_again = true; }
+void OutputPort::say_again(int lane) KNOTWAVE_RT {
+  state_->lanes[static_cast<std::size_t>(lane)].say_again();
+}
 int OutputPort::last_step(int lane) const KNOTWAVE_RT {
   return state_->lanes[static_cast<std::size_t>(lane)].sent();
 }

@@ -510,6 +510,10 @@ TEST(RandomGenerator, KeepsItsBudgetEndsItsNotesAndRestsInAnySplit) {
   try_cases(support::test_count(12));
 }
 
+TEST(RandomGenerator, PredictsTheFirstOpeningOfAClockDivisionInAnySplit) { try_case(1000041); }
+TEST(RandomGenerator, LeavesTheSameOutOfAFullCableInAnySplit) { try_case(1002265); }
+TEST(RandomGenerator, RestsWhereTwoVoicesSpokeToOneKeyAndOneLeft) { try_case(1008104); }
+
 TEST(RandomGeneratorStress, KeepsItsBudgetEndsItsNotesAndRestsInAnySplit) {
   try_cases(support::test_count(300));
 }

@@ -122,6 +122,8 @@ class OutputPort {
 
   /// The receiver is a new one, or came back: every lane's value is sent to it again. [audio]
   void say_again() KNOTWAVE_RT;
+  /// What the receiver of one lane holds is unknown: another lane spoke there.
+  void say_again(int lane) KNOTWAVE_RT;
 
   int last_step(int lane) const KNOTWAVE_RT;  ///< what was sent last
   bool is_waiting() const

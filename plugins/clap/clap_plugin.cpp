@@ -114,6 +114,7 @@ bool gather(std::span<const AudioPort> ports, const clap_audio_buffer* buffers, 
 clap_process_status process(const clap_plugin* plugin, const clap_process* block) KNOTWAVE_RT {
   Plugin& inside = plugin_of(plugin);
   const PluginInfo& info = inside.info();
+  if (!inside.is_active()) return CLAP_PROCESS_ERROR;
   std::array<const float*, Block::kMostChannels> in{};
   std::array<float*, Block::kMostChannels> out{};
   std::size_t ins = 0, outs = 0;
@@ -146,7 +147,7 @@ clap_process_status process(const clap_plugin* plugin, const clap_process* block
   for (std::uint32_t i = 0; i < block->audio_outputs_count; ++i) {
     block->audio_outputs[i].constant_mask = 0;
   }
-  return inside.is_idle() ? CLAP_PROCESS_SLEEP : CLAP_PROCESS_CONTINUE;
+  return inside.is_idle() && inside.may_sleep() ? CLAP_PROCESS_SLEEP : CLAP_PROCESS_CONTINUE;
 }
 
 // What hosts read before there is one.

@@ -41,7 +41,13 @@ EnvelopePlugin::EnvelopePlugin() : envelope_info_(envelope_info()), sent_(kMostM
   static_cast<void>(load_preset(0));  // a shipped patch, as the tests see to
 }
 
-EnvelopePlugin::~EnvelopePlugin() { deactivate(); }
+EnvelopePlugin::~EnvelopePlugin() {
+  drop_arriving();
+  for (Playing* one : {playing_, leaving_}) {
+    if (one != nullptr) arriving_.release(one);
+  }
+  arriving_.collect();
+}
 
 // Control.
 
@@ -76,24 +82,36 @@ Result<void> EnvelopePlugin::activate(double rate_hz) {
   rate_hz_ = rate_hz;
   song_.reset(rate_hz);
   side_chain_.reset();
+  set_side_chain();
   now_ = 0;
   sent_count_ = 0;
   gate_is_open_ = must_say_again_ = false;
   values_.forget_heard();
   arriving_.publish(*std::move(playing));
   playing_ = arriving_.acquire();
+  leaves_until_ = static_cast<std::int64_t>(kMostSecondsToLeave * rate_hz_);
   return {};
 }
 
+/// What was played is kept: it ends its notes in the first blocks after the next activate().
 void EnvelopePlugin::deactivate() {
-  for (Playing* one = arriving_.acquire(); one != nullptr; one = arriving_.acquire()) {
-    arriving_.release(one);
-  }
-  for (Playing** one : {&playing_, &leaving_}) {
-    if (*one != nullptr) arriving_.release(std::exchange(*one, nullptr));
+  drop_arriving();
+  if (playing_ == nullptr) return;
+  if (playing_->generator->now() == 0) {
+    arriving_.release(std::exchange(playing_, nullptr));
+  } else {
+    if (leaving_ != nullptr) arriving_.release(leaving_);
+    leaving_ = std::exchange(playing_, nullptr);
+    leaving_->generator->go_to_rest();
   }
   sent_count_ = 0;
   arriving_.collect();
+}
+
+void EnvelopePlugin::drop_arriving() {
+  for (Playing* one = arriving_.acquire(); one != nullptr; one = arriving_.acquire()) {
+    arriving_.release(one);
+  }
 }
 
 void EnvelopePlugin::set_parameter(std::size_t place, double value) KNOTWAVE_RT {
@@ -155,6 +173,8 @@ void EnvelopePlugin::say_again() KNOTWAVE_RT {
 }
 
 void EnvelopePlugin::tell(Event event, std::int64_t sample) KNOTWAVE_RT {
+  const auto last = static_cast<std::int64_t>(std::max<std::size_t>(block_.frames, 1) - 1);
+  sample = std::min(sample, last);  // beyond it is a host's error
   if (told_ >= kMostTold) play_until(sample);
   event.midi.time.sample = base_ + sample;
   playing_->generator->tell(event);

@@ -90,6 +90,7 @@ class EnvelopePlugin final : public Plugin, private engine::GeneratorSink {
                                                        double rate_hz);
   Result<void> load(engine::EnvelopePatchSpec spec);
 
+  void drop_arriving();
   void take_patch() KNOTWAVE_RT;
   void play_leaving() KNOTWAVE_RT;
   void play_until(std::int64_t sample) KNOTWAVE_RT;

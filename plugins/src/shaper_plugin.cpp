@@ -68,6 +68,7 @@ class ShaperPlugin final : public Effect {
   std::int64_t tail_samples() const KNOTWAVE_RT override {
     return 1 + static_cast<std::int64_t>(kDcBlockTailSeconds * rate_hz());
   }
+  bool may_sleep() const KNOTWAVE_RT override { return true; }
 
  private:
   /// A curve that is not there is a straight line.

@@ -247,6 +247,7 @@ TEST(CrossfadePlugin, SilenceInIsSilenceOutAndIdle) {
   EXPECT_FALSE(plugin->is_idle());
   EXPECT_EQ(support::loudest(play(*plugin, Channels(4, std::vector<float>(100)))), 0);
   EXPECT_TRUE(plugin->is_idle());
+  EXPECT_FALSE(plugin->may_sleep()) << "what input B was is forgotten by and by";
   EXPECT_EQ(plugin->tail_samples(), 0);
 }
 

@@ -318,6 +318,19 @@ const std::string kStep =
     "points = [1, 1, 0]\n[envelopes.step]\ncurve = 'step'\nseconds = 0.01\nsustain_at = 0.4\n"
     "[[outputs]]\nfrom = 'step'\nto = 'cv'\nrange = [0, 10]\n";
 
+TEST(EnvelopePlugin, ASideChainHasItsThresholdBeforeAnybodyMovesIt) {
+  Host host;
+  host.load(kStep);
+  host.set("gate_source", 1);
+  std::vector<float> audio(2000);
+  audio[100] = 0.0625F;   // below -24 dB
+  audio[1000] = 0.0640F;  // above
+  host.hear(audio);
+  host.play(2000, 64);
+  EXPECT_EQ(host.volts[0][999], 0);
+  EXPECT_NEAR(host.volts[0][1000], 1, 1e-6);
+}
+
 TEST(EnvelopePlugin, ASideChainOpensTheGateAtItsSampleAndHoldsIt) {
   for (const std::int64_t block : {1, 64, 1000}) {
     Host host;
@@ -578,6 +591,38 @@ TEST(EnvelopePlugin, APatchThatIsReplacedEndsItsNotesAndRestsBesideTheNewOne) {
   host.play(150000, 64);
   EXPECT_EQ((Receiver(host.sent).controllers[{0, 74}]), 99);
   EXPECT_TRUE(Receiver(host.sent).notes.empty());
+}
+
+TEST(EnvelopePlugin, NoNoteHangsWhereItIsSwitchedOffAndOn) {
+  for (const char* const preset : {"filter-swell", "mpe-pressure", "pitch-adsr"}) {
+    for (const double rate_hz : {48000.0, 96000.0}) {
+      Host host;
+      host.load(patch_text(preset));
+      host.midi(0, 0x90, 60, 100);
+      host.play(4800, 64);
+      ASSERT_EQ(Receiver(host.sent).notes.size(), 1u) << preset;
+      host.plugin().deactivate();
+      ASSERT_TRUE(host.plugin().activate(8000));  // and plays nothing there
+      ASSERT_TRUE(host.plugin().activate(rate_hz));
+      host.midi(4900, 0x80, 60, 0);
+      host.play(60000, 64);
+      EXPECT_TRUE(Receiver(host.sent).notes.empty()) << preset;
+    }
+  }
+}
+
+TEST(EnvelopePlugin, AtRestTheShippedPatchesOfKeysSendNothing) {
+  for (const char* const preset : {"filter-swell", "mpe-pressure", "pitch-adsr"}) {
+    Host host;
+    host.load(patch_text(preset));
+    host.midi(0, 0x90, 60, 100);
+    host.midi(48000, 0x80, 60, 0);
+    host.play(5 * 48000, 512);
+    const std::size_t before = host.sent.size();
+    EXPECT_GT(before, 20u);
+    host.play(10 * 48000, 512);
+    EXPECT_EQ(host.sent.size(), before) << preset;
+  }
 }
 
 TEST(EnvelopePlugin, AStormOfEverythingLeavesNoNoteAndNoNaN) {

@@ -152,6 +152,7 @@ TEST(ShaperPlugin, ItsTailIsAsLongAsItSays) {
   const auto tail = static_cast<std::size_t>(plugin->tail_samples());
   for (std::size_t i = 9600 + tail; i < 96000; ++i) ASSERT_LE(std::abs(out[0][i]), 1e-6F) << i;
   EXPECT_TRUE(plugin->is_idle());
+  EXPECT_TRUE(plugin->may_sleep());
   play(*plugin, music(2, 64));
   EXPECT_FALSE(plugin->is_idle());
 }

@@ -116,6 +116,9 @@ class Plugin {
   virtual void reset() KNOTWAVE_RT = 0;
   /// Silent until something comes in.
   virtual bool is_idle() const KNOTWAVE_RT = 0;
+  /// While it is idle nothing in it goes on: what comes later sounds the same whether it was played
+  /// until then or not, so a host may stop to. Not where noise, clocks or followers run.
+  virtual bool may_sleep() const KNOTWAVE_RT { return false; }
 
   static constexpr std::int64_t kEndless = -1;
   /// How long it may sound behind its last input. [any]

@@ -202,7 +202,8 @@ void MidiClock::doubt(SampleTime time, std::int64_t assumed, bool fits) KNOTWAVE
   const Doubt seen = doubt_;
   doubt_ = {};
   const double period = usual(seen.intervals);
-  if (period == 0 || std::abs(period / period_ - 1) < 0.05) return;
+  // Clocks that waited somewhere come all at once: that is no tempo.
+  if (period < kShortestS * rate_hz_ || std::abs(period / period_ - 1) < 0.05) return;
   ++restarts_;
   const std::int64_t mistaken = seen.came - seen.assumed;
   if (mistaken < 0) missing_ += mistaken;

@@ -18,10 +18,9 @@ int nearest_step(double v) { return static_cast<int>(std::floor(v + 0.5)); }
 
 }  // namespace
 
-OutputLane::OutputLane(const LaneSpec& spec, const Cable& cable)
+OutputLane::OutputLane(const LaneSpec& spec)
     : spec_(spec), top_(spec.bits == 14 ? 16383 : 127), sent_(spec.first_step) {
   curve_.top = top_;
-  first_takes_ = cable.time_of_bytes(most_bytes());
 }
 
 bool OutputLane::has_halves() const KNOTWAVE_RT {
@@ -263,6 +262,7 @@ std::optional<OutputLane::Plan> OutputLane::coarse_plan(Ticks arrival,
 
 void OutputLane::begin(const Plan& plan, Ticks time, Ticks until, const Cable& cable) KNOTWAVE_RT {
   see_until(time, plan.arrival);
+  if (sent_ < 0) is_told_from(plan.arrival);
   if (plan.step <= extremes_.low.step) extremes_.low.owed_since = kNever;
   if (plan.step >= extremes_.high.step) extremes_.high.owed_since = kNever;
   sent_before_ = sent_;
@@ -299,30 +299,42 @@ void OutputLane::reach(Extremes& extremes, std::int64_t from_sample, std::int64_
                        Ticks held_until) const KNOTWAVE_RT {
   for (std::int64_t k = std::max(from_sample, addressed_from_); k <= to_sample; ++k) {
     const double v = curve_.sample(k);
+    extremes.has_left_rest |= nearest_step(v) != spec_.rest_step;
     // Well within both extremes, as nearly always: kMargin is far more than rounding.
     if (v < extremes.high.step - 0.5 && v > extremes.low.step + 0.5) continue;
     const int high = step_reached_above(v), low = step_reached_below(v);
     const Ticks time = sample_ticks(k);
-    note_extreme(extremes.high, high, 1, time, held_until);
-    note_extreme(extremes.low, low, -1, time, held_until);
+    note_extreme(extremes, extremes.high, high, 1, time, held_until);
+    note_extreme(extremes, extremes.low, low, -1, time, held_until);
   }
 }
 
-void OutputLane::note_extreme(Extreme& extreme, int step, int direction, Ticks time,
+void OutputLane::note_extreme(Extremes& all, Extreme& extreme, int step, int direction, Ticks time,
                               Ticks held_until) const KNOTWAVE_RT {
+  if (time < extreme.from) return;
   const bool is_further = extreme.step < 0 || direction * (step - extreme.step) > 0;
   if (!is_further && step != extreme.step) return;
-  if (is_further) extreme = {step, kNever};
+  if (is_further) extreme = {step, kNever, extreme.from};
   if (is_held(step, direction, time, held_until)) {
     extreme.owed_since = kNever;
-  } else if (extreme.owed_since == kNever && is_owed(step, time)) {
+  } else if (extreme.owed_since == kNever && is_owed(step, all.has_left_rest, time)) {
     extreme.owed_since = time;
   }
 }
 
-/// Always, but for the rest from which a value starts before anybody could be told.
-bool OutputLane::is_owed(int step, Ticks time) const KNOTWAVE_RT {
-  return sent_ >= 0 || step != spec_.rest_step || time >= arrived_ + first_takes_;
+/// Always, but for the rest that a value stood at from the beginning.
+bool OutputLane::is_owed(int step, bool has_left_rest, Ticks time) const KNOTWAVE_RT {
+  return step != spec_.rest_step || (sent_ >= 0 && time >= told_from_ && has_left_rest);
+}
+
+/// Such a rest does not stand for an extreme of the curve that comes after it.
+void OutputLane::is_told_from(Ticks time) KNOTWAVE_RT {
+  told_from_ = time;
+  const auto is_rest = [this](const Extreme& extreme) {
+    return extreme.step == spec_.rest_step && extreme.owed_since == kNever;
+  };
+  if (is_rest(extremes_.low)) extremes_.low = {top_ + 1, kNever, time};
+  if (is_rest(extremes_.high)) extremes_.high = {-1, kNever, time};
 }
 
 /// The receiver hears of `step` or went beyond: it is there at `time`, or a message is on its way.

@@ -36,7 +36,7 @@ using Selections = std::array<ParameterSelection, 16>;
 
 class OutputLane {
  public:
-  OutputLane(const LaneSpec& spec, const Cable& cable);
+  explicit OutputLane(const LaneSpec& spec);
 
   const LaneSpec& spec() const KNOTWAVE_RT { return spec_; }
   bool is_expression() const KNOTWAVE_RT;
@@ -83,14 +83,17 @@ class OutputLane {
  private:
   /// The lowest or the highest step that the value has reached: what is owed to the receiver.
   struct Extreme {
-    int step = -1;  ///< -1: none yet
+    int step = -1;  ///< -1, for a low one also above all: none yet
     Ticks owed_since = kNever;
+    Ticks from = 0;  ///< what was before does not count
   };
   struct Extremes {
     Extreme low, high;
+    bool has_left_rest = false;
   };
 
-  bool is_owed(int step, Ticks time) const KNOTWAVE_RT;
+  bool is_owed(int step, bool has_left_rest, Ticks time) const KNOTWAVE_RT;
+  void is_told_from(Ticks time) KNOTWAVE_RT;
   bool is_held(int step, int direction, Ticks time, Ticks until) const KNOTWAVE_RT;
   bool is_nrpn() const KNOTWAVE_RT { return spec_.kind == OutputKind::nrpn; }
   bool has_halves() const KNOTWAVE_RT;
@@ -106,7 +109,7 @@ class OutputLane {
   void see_until(Ticks now, Ticks held_until) KNOTWAVE_RT;
   void reach(Extremes& extremes, std::int64_t from_sample, std::int64_t to_sample,
              Ticks held_until) const KNOTWAVE_RT;
-  void note_extreme(Extreme& extreme, int step, int direction, Ticks time,
+  void note_extreme(Extremes& all, Extreme& extreme, int step, int direction, Ticks time,
                     Ticks held_until) const KNOTWAVE_RT;
   std::optional<int> owed_step(const Extremes& reached, Ticks hold_end) const KNOTWAVE_RT;
 
@@ -115,8 +118,8 @@ class OutputLane {
   int sent_ = 0;  ///< -1: nobody knows
   int sent_before_ = -1;
   int high_half_ = -1, low_half_ = -1;
-  Ticks first_takes_ = 0;  ///< the first message to come, at most
-  Ticks arrived_ = 0;      ///< when what was sent last was there, as far as is known
+  Ticks told_from_ = 0;  ///< the first message since nobody knew has come
+  Ticks arrived_ = 0;    ///< when what was sent last was there, as far as is known
   bool is_on_its_way_ = false;
   Ticks not_before_ = 0;
   Ticks left_at_ = kNever;

@@ -362,7 +362,7 @@ Result<int> OutputPort::add_lane(const LaneSpec& spec) {
     return fail(ErrorCode::value_out_of_range,
                 "a port has " + std::to_string(kMostLanes) + " lanes at most");
   }
-  state_->lanes.emplace_back(lane, state_->cable);
+  state_->lanes.emplace_back(lane);
   state_->lane_bytes.push_back(0);
   const OutputLane& added = state_->lanes.back();
   const Ticks known =

@@ -395,20 +395,23 @@ void expect_same(const std::vector<MidiEvent>& a, const std::vector<MidiEvent>& 
 }
 
 /// The lowest and the highest step that a value reached are heard, but for its rest where it left
-/// that before a first message, of 12 bytes at most, could have come.
+/// that before a first message, of 12 bytes at most, came.
 void expect_extremes(const OutputSpec& spec, const std::vector<double>& values,
                      const std::vector<MidiEvent>& sent) {
   Receiver receiver;
   int heard_low = 1 << 14, heard_high = -1;
+  double told_s = 0;
   for (const MidiEvent& event : sent) {
     receiver.hear(event);
     const int step = receiver.step(spec, spec.channel - 1, 0);
     if (step < 0) continue;
+    if (heard_high < 0) told_s = seconds_of(event) + 12 / kDinBytesPerSecond;
     heard_low = std::min(heard_low, step);
     heard_high = std::max(heard_high, step);
   }
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const auto told = values.begin() + static_cast<std::ptrdiff_t>(12 / kDinBytesPerSecond * kRate);
+  const auto told = values.begin() +
+                    std::min(std::ssize(values), static_cast<std::ptrdiff_t>(told_s * kRate) + 1);
   const auto is_rest = [&](auto extreme) {
     const bool comes_back = std::find(told, values.end(), *extreme) != values.end();
     return std::abs(*extreme - spec.rest) <= 0.5 && !comes_back;

@@ -238,6 +238,19 @@ TEST(MidiClock, ClocksThatAreHeldUpAndComeAtOnceAreNotLost) {
   EXPECT_EQ(cable.clock.status().restarts, 0);
 }
 
+TEST(MidiClock, ClocksOfAStoppedProcessThatComeAllAtOnceAreNoTempo) {
+  for (const int held : {12, 24, 43, 48, 240}) {
+    Cable cable;  // its time stood still with the process
+    cable.send(0.05, 0xFA);
+    for (int i = 0; i < 500; ++i) cable.send(0.1 + i / 48.0, 0xF8);
+    const double end_s = 0.1 + 499 / 48.0;
+    for (int i = 0; i < held; ++i) cable.send(end_s + 0.01 + i * 60e-6, 0xF8);
+    for (int i = 1; i < 500; ++i) cable.send(end_s + 0.025 + i / 48.0, 0xF8);
+    for (const Cable::Tempo& tempo : cable.tempos) EXPECT_NEAR(tempo.bpm, 120, 4) << held;
+    EXPECT_NEAR(cable.tempos.back().bpm, 120, 0.5) << held;
+  }
+}
+
 TEST(MidiClock, StampsQuantisedToBlocksGiveASteadyTempo) {
   Cable cable;  // as RtMidi stamps under JACK: 1024 frames are 21 ms, a whole clock
   for (int i = 0; i < 48 * 120; ++i) {

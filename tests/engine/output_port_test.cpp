@@ -400,6 +400,37 @@ TEST(OutputPort, AValueThatStartsFromRestBeforeAMessageCouldComeIsNotSaidAtRest)
   }
 }
 
+TEST(OutputPort, ARestThatIsLeftBeforeTheFirstMessageComesIsNotSentAfterTheValue) {
+  for (const int bits : {7, 14}) {
+    for (const int lanes : {1, 30}) {
+      for (const double begin_s : {0.0001, 0.0005, 0.0009, 0.002}) {
+        auto port = *OutputPort::create(din());
+        Wire wire(din());
+        std::vector<Motion> motions;
+        for (int i = 0; i < lanes; ++i) {
+          LaneSpec lane = control(i, bits);
+          lane.first_step = -1;
+          lane.rest_step = 0;
+          ASSERT_TRUE(port->add_lane(lane));
+          // Falls from 100 to 76 after the rest: neither hides behind it.
+          motions.push_back([=](double t, double) {
+            if (t < begin_s) return 0.0;
+            return t < begin_s + 0.1 ? 100.0 : 76.0;
+          });
+        }
+        play(*port, wire, motions, 0, 24000, kRate);
+        const int number = bits == 7 ? lanes - 1 : lanes - 1 + 32;
+        std::vector<int> steps = steps_sent(wire, number);
+        ASSERT_GE(steps.size(), 2u);
+        if (lanes == 1 && begin_s > 0.001) steps.erase(steps.begin());  // it came in time
+        EXPECT_EQ(std::ranges::count(steps, 0), 0)
+            << bits << " bits, " << lanes << " lanes, from " << begin_s;
+        EXPECT_EQ(steps.back(), 76);
+      }
+    }
+  }
+}
+
 TEST(OutputPort, LanesThatMoveAlikeAreServedAlike) {
   const OutputPortConfig config = din(false);
   auto port = *OutputPort::create(config);

@@ -50,8 +50,8 @@ struct LaneSpec {
   int key = 60;  ///< poly_pressure
   int bits = 7;
   int first_step = 0;  ///< what the receiver is taken to hold; -1: nobody knows, so it is sent
-  /// What a receiver that was told nothing needs no message for, if the value was there only before
-  /// one could have come; -1: there is none.
+  /// What needs no message to a receiver that was told nothing yet, if the value left it before the
+  /// first message came; -1: there is none.
   int rest_step = -1;
 };
 

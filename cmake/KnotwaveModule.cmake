@@ -26,11 +26,12 @@ function(knotwave_app name)
   set_property(GLOBAL APPEND PROPERTY KNOTWAVE_APPS ${name})
 endfunction()
 
-# knotwave_test(MODULE SOURCES ... [LIBS ...])
+# knotwave_test(MODULE [ALONE] SOURCES ... [LIBS ...])
 # One test program a module, tests/MODULE/*_test.cpp, each test labelled with the module; suites
-# named *Stress are long and labelled stress instead.
+# named *Stress are long and labelled stress instead. ALONE: nothing else runs beside them, since a sound
+# server lets go of clients that are kept waiting.
 function(knotwave_test module)
-  cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "ALONE" "" "SOURCES;LIBS" ${ARGN})
   add_executable(test_${module} ${arg_SOURCES})
   target_link_libraries(test_${module} PRIVATE
     ${arg_LIBS} knotwave_test_support GTest::gmock GTest::gtest_main knotwave_flags)
@@ -45,7 +46,7 @@ function(knotwave_test module)
     endif()
   endforeach()
   gtest_discover_tests(test_${module} TEST_FILTER "-*Stress.*"
-    PROPERTIES LABELS ${module} TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+    PROPERTIES LABELS ${module} TIMEOUT 300 RUN_SERIAL ${arg_ALONE} DISCOVERY_TIMEOUT 60)
   gtest_discover_tests(test_${module} TEST_FILTER "*Stress.*" TEST_LIST test_${module}_STRESS
     PROPERTIES LABELS stress TIMEOUT 3600 DISCOVERY_TIMEOUT 60)
 endfunction()
